@@ -6,8 +6,9 @@ macro step, and lets the set points that it was last given act at the next tick:
 sample n acts from sample n + 1 on, one sample of delay, at every macro step. Without a sample time
 the sensors are told at the end of each macro step and set points act at the beginning of the next.
 
-Failures of amplifiers and of the link (`event`) act at their exact times. `axis[k].hold` states the static
-load as a control current by the same force law: with a coil off, saturated iron or a current at its limit.
+Failures of amplifiers, link and sensors (`event`) act at their exact times. `axis[k].hold` states the
+static load as a control current by the same force law: with a coil off, saturated iron or a current at its
+limit.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from ...modelkit.status import BAD_INPUT, OK, TOO_LONG_STEP
 from ...modelkit.variables import Choices, choice, group, groups, integer, real
 from .. import seat
 from . import amplifier, law, magnet, sensing
-from .amplifier import ALWAYS, COILS, Amplifier, AmplifierEvent, CoilState, Supply
+from .amplifier import ALWAYS, AXES, COILS, NOTHING, Amplifier, AmplifierEvent, PartState, Supply
 from .law import ROUNDING, limited
 from .magnet import Circuit, Magnet
 from .sensing import Sensor
@@ -117,7 +118,8 @@ class Hidden:
     ticks: int = integer(0, "number of the sample to come")
     begun: int = integer(0, "samples have been taken")
     axis: tuple = groups(law.Command, 2)  # that acts now
-    coil: tuple = groups(CoilState, COILS)
+    coil: tuple = groups(PartState, COILS)
+    sensor: tuple = groups(PartState, AXES)
     link_off: float = real(ALWAYS, "s", "when the link was cut off; below zero: it is on")
 
 
@@ -140,8 +142,8 @@ def coil_state(coil, flux, integral, gap, volt, m):
     """
     i = magnet.current_of(flux, gap, m.p.magnet, m.d)
     axis, p = m.s.axis[coil // 2], m.p.amplifier
-    if m.s.coil[coil].alive < 0.5:
-        return (-volt if flux > 0.0 else 0.0), i, 0.0, False, False
+    if m.s.coil[coil].fault != NOTHING:
+        return amplifier.failed_voltage(m.s.coil[coil].fault, flux, volt), i, 0.0, False, False
     target, cut = 0.0, False
     if axis.enable > 0.5:
         target, cut = amplifier.set_point(coil, axis.set, p)
@@ -204,8 +206,11 @@ def _ready(m, since):
 def sample(q, m):
     """Put the sensors' readings (m) into the outputs."""
     for k in range(2):
-        noise = sensing.deviation(m.s.ticks, k, m.p.sensing)
-        m.o.axis[k].sensed = m.p.sensing.gain * q[SENSE + k] + noise
+        if m.s.sensor[k].fault == NOTHING:
+            noise = sensing.deviation(m.s.ticks, k, m.p.sensing)
+            m.o.axis[k].sensed = m.p.sensing.gain * q[SENSE + k] + noise
+        elif m.s.sensor[k].fault == amplifier.SENSOR_LOST:
+            m.o.axis[k].sensed = 0.0
 
 
 @kernel
@@ -240,7 +245,7 @@ def report(q, m):
 
 @kernel
 def derive(words):
-    """Error weights of the state, and the constants of the magnets; returns 0: nothing can be wrong."""
+    """Error weights of the state, and the constants of the magnets; sees that events can be."""
     m = words.view(MEMORY)[0]
     magnet.lay_out_circuit(m.d, m.p.magnet, m.p.amplifier.bias)
     seat.set_weights(m.weight)
@@ -249,7 +254,7 @@ def derive(words):
         m.weight[FLUX + coil] = 1.0 / (CURRENT_SCALE * m.d.inductance)
         m.weight[RESET + coil] = m.p.amplifier.reset / CURRENT_SCALE
     m.weight[SENSE] = m.weight[SENSE + 1] = 1.0 / SIGNAL_SCALE
-    return 0
+    return amplifier.event_problem(m.p.event, m.message_numbers)
 
 
 @kernel
@@ -266,7 +271,6 @@ def start(words):
         m.s.axis[k].set, m.s.axis[k].enable = m.o.axis[k].hold, 1.0
     if m.p.sample_time > 0.0:
         m.s.ticks = math.ceil((m.time - ROUNDING) / m.p.sample_time)
-    amplifier.let_happen(m.p.event, m.time - ROUNDING, m.s)
     u1, u2, y1, y2 = displacement(0.0, m.q, m)
     for coil in range(COILS):
         target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].set, m.p.amplifier)
@@ -274,6 +278,7 @@ def start(words):
         m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
     m.q[SENSE], m.q[SENSE + 1] = y1, y2
     sample(m.q, m)
+    amplifier.let_happen(m.p.event, m.time - ROUNDING, m.s)
     seat.begin(seat.PLANAR, react, report, m)
     m.o.journal.fx, m.o.journal.fy = fx, fy
     m.o.housing.fx, m.o.housing.fy = -fx, -fy
@@ -367,6 +372,7 @@ MODEL = Model(
     start=start,
     advance=advance,
     instant=instant,
+    problems=amplifier.PROBLEMS,
     starts_from={
         **{f"journal.f{axis}": (f"journal.a{axis}_free", *_STATIC) for axis in "xy"},
         **{f"housing.f{axis}": (f"journal.a{axis}_free", *_STATIC) for axis in "xy"},

@@ -5,7 +5,8 @@ link's voltage U:
 
     i* = clip(i0 +- i_c, 0, i_max)      v = clip(R i + w_a L0 (i* - i + w_r integral(i* - i)), -U, U)
 
-The integral stands still while v is at a limit. A coil whose amplifier failed is emptied by -U.
+The integral stands still while v is at a limit. A coil whose amplifier failed is emptied by -U; a shorted
+one has v = 0, and one whose amplifier is stuck v = U. A sensor's signal may be lost or stuck, too.
 """
 
 from __future__ import annotations
@@ -16,20 +17,32 @@ from dataclasses import dataclass
 from ...modelkit.kernel import kernel
 from ...modelkit.variables import Choices, choice, integer, real
 
-COILS = 4
+AXES, COILS = 2, 4
 ALWAYS = -1.0  # s; of a link that was not switched off
 KINDS = Choices(
     "SupplyEvent",
-    ("none", "coil_off", "coil_on", "link_off", "link_on"),
+    (
+        *("none", "coil_off", "coil_on", "link_off", "link_on"),
+        *("coil_short", "coil_stuck", "sensor_lost", "sensor_stuck", "sensor_on"),
+    ),
     (
         "nothing",
         "the amplifier of a coil fails, or of all",
-        "the amplifier of a coil works again, or of all",
+        "coil and amplifier work again, or all",
         "the DC link is cut off, and its voltage falls",
         "the DC link has its voltage again",
+        "a coil's terminals are shorted, and its amplifier is off",
+        "the amplifier of a coil gives all voltage, and obeys no set point",
+        "the signal of an axis' sensor is 0 from the next sample on, or of both",
+        "the signal of an axis' sensor stays what it was in the last sample, or of both",
+        "the sensor of an axis works again, or both",
     ),
 )
 NOTHING, COIL_OFF, COIL_ON, LINK_OFF, LINK_ON = range(5)
+COIL_SHORT, COIL_STUCK, SENSOR_LOST, SENSOR_STUCK, SENSOR_ON = range(5, 10)
+LINK, COIL, SENSOR = range(3)
+OF = (-1, COIL, COIL, LINK, LINK, COIL, COIL, SENSOR, SENSOR, SENSOR)  # by kind: what it happens to
+PROBLEMS = ("event[{0:g}].coil = {1:g} is of a sensor; sensors are 1 and 2, as the axes, and 0: both",)
 
 
 @dataclass(frozen=True)
@@ -57,25 +70,25 @@ class Supply:
 
 @dataclass(frozen=True)
 class AmplifierEvent:
-    """An event of amplifiers or link at an instant."""
+    """An event of amplifiers, link or sensors at an instant."""
 
     time: float = real(0.0, "s", "when", minimum=0.0, needs="kind", tunable=True)
     kind: int = choice(NOTHING, KINDS, "what", tunable=True)
     coil: int = integer(
         0,
-        "which: 1 to 4 for the first axis' +, its -, the second's +, its -; 0: all",
+        "which: 1 to 4 for the first axis' +, its -, the second's +, its -; of sensors 1, 2; 0: all",
         minimum=0,
         maximum=4,
-        needs="kind == 1 or kind == 2",
+        needs="kind == 1 or kind == 2 or kind >= 5",
         tunable=True,
     )
 
 
 @dataclass(frozen=True)
-class CoilState:
-    """Whether a coil's amplifier works."""
+class PartState:
+    """Whether a coil with its amplifier works, or a sensor."""
 
-    alive: float = real(1.0, "1", "0: it failed")
+    fault: int = integer(NOTHING, "number of the last event, 0: it works")
 
 
 @kernel
@@ -94,21 +107,48 @@ def set_point(coil, control, p):
 
 
 @kernel
+def _last(events, until, part, number):
+    """The last of the `events` up to the time `until` (s) that happened to a part: its kind, and when (s).
+
+    part: `LINK`, `COIL` or `SENSOR`, which one by its number from 1.
+    """
+    kind, time = NOTHING, ALWAYS
+    for event in events:
+        ours = OF[event.kind] == part and (part == LINK or event.coil == 0 or event.coil == number)
+        if ours and time <= event.time <= until:
+            kind, time = event.kind, event.time
+    return kind, time
+
+
+@kernel
 def let_happen(events, until, s):
-    """Put s.coil and s.link_off as all `events` up to the time `until` (s) leave them.
+    """Put s.coil, s.sensor and s.link_off as all `events` up to the time `until` (s) leave them.
 
     The last one counts, whichever its number; of those at the same time, that of the higher number.
     """
-    s.link_off, switched = ALWAYS, ALWAYS
-    for event in events:
-        of_link = event.kind == LINK_OFF or event.kind == LINK_ON
-        if of_link and switched <= event.time <= until:
-            switched = event.time
-            s.link_off = event.time if event.kind == LINK_OFF else ALWAYS
+    kind, time = _last(events, until, LINK, 0)
+    s.link_off = time if kind == LINK_OFF else ALWAYS
     for k in range(COILS):
-        s.coil[k].alive, switched = 1.0, ALWAYS
-        for event in events:
-            of_coil = event.kind == COIL_OFF or event.kind == COIL_ON
-            if of_coil and (event.coil == 0 or event.coil == k + 1) and switched <= event.time <= until:
-                switched = event.time
-                s.coil[k].alive = 0.0 if event.kind == COIL_OFF else 1.0
+        kind, _ = _last(events, until, COIL, k + 1)
+        s.coil[k].fault = NOTHING if kind == COIL_ON else kind
+    for k in range(AXES):
+        kind, _ = _last(events, until, SENSOR, k + 1)
+        s.sensor[k].fault = NOTHING if kind == SENSOR_ON else kind
+
+
+@kernel
+def event_problem(events, numbers):
+    """1 where an event is of a sensor that is not there, else 0; numbers: those of the text."""
+    for k, event in enumerate(events):
+        if OF[event.kind] == SENSOR and event.coil > AXES:
+            numbers[0], numbers[1] = k + 1, event.coil
+            return 1
+    return 0
+
+
+@kernel
+def failed_voltage(fault, flux, volt):
+    """Voltage (V) of a coil after such an event, by its flux linkage (V s) and the link's voltage (V)."""
+    if fault == COIL_STUCK:
+        return volt
+    return -volt if fault == COIL_OFF and flux > 0.0 else 0.0

@@ -9,9 +9,19 @@ import numpy as np
 import pytest
 
 from touchdown.bearings.magnetic import amb_actuator
-from touchdown.bearings.magnetic.amplifier import COIL_OFF, COIL_ON, LINK_OFF, LINK_ON
+from touchdown.bearings.magnetic.amplifier import (
+    COIL_OFF,
+    COIL_ON,
+    COIL_SHORT,
+    COIL_STUCK,
+    LINK_OFF,
+    LINK_ON,
+    SENSOR_LOST,
+    SENSOR_ON,
+    SENSOR_STUCK,
+)
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.model import StepSizeError
+from touchdown.modelkit.model import ModelError, StepSizeError
 
 STEP = 1e-4  # s
 ALONG = 1j**0.5  # the first axis
@@ -208,4 +218,72 @@ def test_of_events_before_the_start_the_last_one_counts():
         one.step(0.6, STEP)
         assert one.record["o"]["link"] == lev.VOLTAGE
         first = 1.0 if order is not listed else 0.0  # at the same time, the last of the list
-        assert [coil["alive"] for coil in one.record["s"]["coil"]] == [first, 0.0, 1.0, 1.0]
+        assert [coil["fault"] == 0 for coil in one.record["s"]["coil"]] == [first, 0.0, 1.0, 1.0]
+
+
+def run_held(one: Instance, until: float, u: float = 0.0) -> np.ndarray:
+    """Currents (A) of the four coils at the time `until` (s), on from where it is, the journal held (m)."""
+    journal, out = one.record["u"]["journal"], one.record["o"]
+    journal["x"], journal["y"] = (u * ALONG).real, (u * ALONG).imag
+    for k in range(round(float(one.record["time"] + 2 * one.record["half"]) / STEP), round(until / STEP)):
+        one.step(k * STEP, STEP)
+    return np.array([axis[f"current_{coil}"] for axis in out["axis"] for coil in ("plus", "minus")])
+
+
+def test_the_current_of_a_shorted_coil_decays_by_its_resistance():
+    """i = i0 exp(-R t/L), L = 2 K/g, from the event on, to a micro-step's 1e-6; the link gives nothing.
+
+    Without resistance its flux stays, and its current moves with its gap.
+    """
+    one = with_events((0.25e-3, COIL_SHORT, 2))
+    one.start(0.0)
+    one.record["u"]["axis"][0]["set"] = 0.0
+    i = run_held(one, 8e-3)
+    decay = math.exp(-lev.RESISTANCE * (8e-3 - 0.25e-3) / lev.L0)
+    assert decay < 0.5
+    assert i == pytest.approx([lev.BIAS, lev.BIAS * decay, lev.BIAS, lev.BIAS], rel=1e-5)
+    assert one.record["o"]["axis"][0]["voltage_minus"] == 0.0
+    heat = lev.RESISTANCE * lev.BIAS**2 * (3 * 8e-3 + 0.25e-3)
+    assert one.record["o"]["link_energy"] == pytest.approx(heat, rel=1e-5)
+    one = with_events((0.0, COIL_SHORT, 1), (9e-4, COIL_ON, 1))
+    one.record["p"]["amplifier"]["resistance"] = 0.0
+    one.start(0.0)
+    run_held(one, STEP)
+    assert run_held(one, 5e-4, 1e-4)[0] == pytest.approx(
+        lev.BIAS * (1 - 1e-4 * math.cos(lev.POLE) / lev.GAP), rel=1e-9
+    )
+    assert run_held(one, 3e-3, 1e-4)[0] == pytest.approx(lev.BIAS, rel=1e-6)  # its amplifier is back
+
+
+def test_a_stuck_amplifier_drives_its_coil_to_voltage_over_resistance():
+    """i = U/R + (i0 - U/R) exp(-R t/L) in iron that does not saturate, to a micro-step's 1e-6."""
+    one = with_events((0.25e-3, COIL_STUCK, 3))
+    one.record["p"]["magnet"]["flux_limit"] = 1e6
+    one.start(0.0)
+    end = lev.VOLTAGE / lev.RESISTANCE
+    for until in (1e-3, 60e-3):
+        left = math.exp(-lev.RESISTANCE * (until - 0.25e-3) / lev.L0)
+        i = run_held(one, until)
+        assert i[2] == pytest.approx(end + (lev.BIAS - end) * left, rel=1e-5)
+    assert i[[0, 1, 3]] == pytest.approx([lev.BIAS] * 3, rel=1e-6)
+    assert one.record["o"]["axis"][1]["voltage_plus"] == lev.VOLTAGE
+    assert one.record["o"]["limits"]["voltage_time"] == 0.0  # no control asks for it
+
+
+def test_a_sensor_s_signal_gets_stuck_or_lost_at_the_next_sample():
+    """The last sample before the event stays; the other axis, and both amplifiers, go on."""
+    one = with_events((0.25e-3, SENSOR_STUCK, 1), (0.55e-3, SENSOR_LOST, 0), (0.85e-3, SENSOR_ON, 2))
+    one.record["p"]["sensing"]["noise"] = 3e-6
+    one.start(0.0)
+    seen = []
+    for k in range(1, 12):  # after samples 0 to 10
+        run_held(one, k * STEP)
+        seen.append([axis["sensed"] for axis in one.record["o"]["axis"]])
+    first, second = np.array(seen).T
+    assert len(set(first[:3])) == 3
+    assert (first[3:6] == first[2]).all()
+    assert (first[6:] == 0.0).all()
+    assert (second[6:9] == 0.0).all()
+    assert len({*second[:6], *second[9:]}) == 8
+    with pytest.raises(ModelError, match=r"event\[2\].coil = 3 is of a sensor; sensors are 1 and 2"):
+        with_events((0.0, COIL_OFF, 3), (0.0, SENSOR_LOST, 3)).start(0.0)
