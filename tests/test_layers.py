@@ -42,7 +42,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 }
 BUDGETS = {  # lines of a package at most, with room for one feature. A commit that raises one says why
     "rotor": 6900,
-    "bearings": 20810,
+    "bearings": 20950,
     "modelkit": 4180,
     "fmus": 3450,
     "master": 21070,
@@ -63,6 +63,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
             "rating",
             "supports",
             "magnetic",
+            "excitation",
             "angular",
             "rolling",
             "heat",

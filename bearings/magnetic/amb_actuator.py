@@ -14,7 +14,7 @@ limit.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model
@@ -23,8 +23,10 @@ from ...modelkit.ports import Interface, Load, PlanarMountReaction, PlanarSeatRe
 from ...modelkit.status import BAD_INPUT, OK, TOO_LONG_STEP
 from ...modelkit.variables import Choices, choice, group, groups, integer, real
 from .. import seat
+from ..excitation import Lines
 from . import amplifier, law, magnet, sensing
 from .amplifier import ALWAYS, AXES, COILS, NOTHING, Amplifier, AmplifierEvent, PartState, Supply
+from .injection import Injection, injected
 from .law import ROUNDING, limited
 from .magnet import Circuit, Magnet
 from .sensing import Sensor
@@ -52,6 +54,7 @@ class Parameters:
     sample_time: float = real(
         1e-4, "s", "from sample to sample; 0: no sampling, the end of the macro step counts", minimum=0.0
     )
+    inject: Injection = group(Injection)
     event: tuple = groups(AmplifierEvent, EVENTS)
     interface: Interface = group(Interface)
 
@@ -106,6 +109,9 @@ class Outputs(magnet.Factors):
     peak_current: float = real(0.0, "A", "largest of any coil since the start", local=True)
     least_gap: float = real(0.0, "m", "smallest air gap to the magnets since the start", local=True)
     limits: _LimitTimes = group(_LimitTimes)
+    injected: float = real(
+        0.0, "1", "sum of the injected lines at the last sample, each of size 1", local=True
+    )
 
 
 @dataclass(frozen=True)
@@ -177,7 +183,12 @@ def react(t, q, dq, m):
     dq[AT_CURRENT], dq[AT_VOLTAGE] = 1.0 if any_cut else 0.0, 1.0 if any_full else 0.0
     fx, fy = m.d.cosine * f1 - m.d.sine * f2, m.d.sine * f1 + m.d.cosine * f2
     dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
-    return Load(fx, fy, 0.0, -fx, -fy)
+    if m.p.inject.force == 0.0 or m.time + m.s.done < m.p.inject.begin - ROUNDING:
+        return Load(fx, fy, 0.0, -fx, -fy)
+    f1 = m.p.inject.force * injected(m.time + t, 0, m.p.inject)
+    f2 = m.p.inject.force * injected(m.time + t, 1, m.p.inject)
+    outside_x, outside_y = m.d.cosine * f1 - m.d.sine * f2, m.d.sine * f1 + m.d.cosine * f2
+    return Load(fx + outside_x, fy + outside_y, 0.0, -fx, -fy)
 
 
 @kernel
@@ -203,23 +214,30 @@ def _ready(m, since):
 
 
 @kernel
-def sample(q, m):
-    """Put the sensors' readings (m) into the outputs."""
+def sample(time, q, m):
+    """Put the sensors' readings (m) at `time` (s) into the outputs."""
+    inject = m.p.inject
     for k in range(2):
         if m.s.sensor[k].fault == NOTHING:
             noise = sensing.deviation(m.s.ticks, k, m.p.sensing)
             m.o.axis[k].sensed = m.p.sensing.gain * q[SENSE + k] + noise
+            if inject.sensed != 0.0:
+                m.o.axis[k].sensed += inject.sensed * injected(time, k, inject)
         elif m.s.sensor[k].fault == amplifier.SENSOR_LOST:
             m.o.axis[k].sensed = 0.0
+    if inject.sensed != 0.0 or inject.set != 0.0 or inject.force != 0.0:
+        m.o.injected = injected(time, max(inject.axis - 1, 0), inject)
 
 
 @kernel
-def take_commands(m):
-    """Let the set points act that were last given."""
+def take_commands(time, m):
+    """Let the set points act from `time` (s) on that were last given."""
     for k in range(2):
         command = m.u.axis[k]
         m.s.axis[k].set = command.set if m.p.command == 0 else command.force_set / m.d.current_factor
         m.s.axis[k].enable = command.enable
+        if m.p.inject.set != 0.0:
+            m.s.axis[k].set += m.p.inject.set * injected(time, k, m.p.inject)
 
 
 @kernel
@@ -236,7 +254,7 @@ def report(q, m):
         else:
             o.voltage_minus, o.current_minus = v, i
     if m.p.sample_time == 0.0:
-        sample(q, m)
+        sample(m.time + 2.0 * m.half, q, m)
         m.s.ticks += 1
     m.o.tick = m.s.ticks
     m.o.link, m.o.supplied, m.o.link_energy = volt, q[SUPPLIED], q[TAKEN]
@@ -277,7 +295,7 @@ def start(words):
         gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
         m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
     m.q[SENSE], m.q[SENSE + 1] = y1, y2
-    sample(m.q, m)
+    sample(m.time, m.q, m)
     amplifier.let_happen(m.p.event, m.time - ROUNDING, m.s)
     seat.begin(seat.PLANAR, react, report, m)
     m.o.journal.fx, m.o.journal.fy = fx, fy
@@ -294,11 +312,13 @@ def _act(time, left, m):
     if ts > 0.0:
         if abs(m.s.ticks * ts - time) <= ROUNDING:
             if m.s.begun == 1:
-                take_commands(m)
-            sample(m.q, m)
+                take_commands(time, m)
+            sample(time, m.q, m)
             m.s.ticks += 1
             m.s.begun = 1
         left = min(left, m.s.ticks * ts - time)
+    if m.p.inject.force != 0.0 and m.p.inject.begin - time > ROUNDING:
+        left = min(left, m.p.inject.begin - time)
     for event in m.p.event:
         if event.kind > 0 and abs(event.time - time) <= ROUNDING:
             amplifier.let_happen(m.p.event, time + ROUNDING, m.s)
@@ -312,7 +332,7 @@ def integrate(m, work, step):
     """Advance m.q by `step` (s), from tick to tick and event to event. As `seat.integrate`."""
     h, status, evaluations = m.h, OK, 0
     if m.p.sample_time == 0.0:
-        take_commands(m)
+        take_commands(m.time, m)
     while status == OK and step - m.s.done > ROUNDING:
         span = _act(m.time + m.s.done, step - m.s.done, m)
         m.h = h
@@ -331,7 +351,7 @@ def instant(t, q, dq, words):
     m = words.view(MEMORY)[0]
     m.time, m.s.done, m.s.since = t, 0.0, 0.0
     amplifier.let_happen(m.p.event, t, m.s)
-    take_commands(m)
+    take_commands(t, m)
     seat.instant(seat.PLANAR, react, 0.0, q, dq, m)
 
 
@@ -353,9 +373,11 @@ _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")
 _FACTORS = ("magnet.gap", "magnet.area", "magnet.turns", "magnet.pole_angle", "amplifier.bias")
 _LIMITS = ("amplifier.current_limit", "magnet.flux_limit", "magnet.iron_path")
 _HOLD = ("journal.ax_free", "journal.ay_free", *_STATIC, *_FACTORS, *_LIMITS, "magnet.angle")
+_LINES = tuple(f"inject.lines.{one.name}" for one in fields(Lines))
 _SENSED = (
     *("journal.x", "journal.y", "housing.x", "housing.y", "sensor.x", "sensor.y", "magnet.angle"),
     *("sensing.at", "sensing.gain", "sensing.noise", "sensing.seed"),
+    *("inject.sensed", "inject.axis", "inject.begin", *_LINES),
 )
 
 MODEL = Model(
