@@ -39,7 +39,7 @@ def kept(scene_name: str) -> dict[str, list[InProcessComponent]]:
         for name in scene.control[0]:
             component = system.components[name]
             assert isinstance(component, InProcessComponent)
-            found.setdefault(component.model.name, []).append(component)
+            found.setdefault(component.instance.model.name, []).append(component)
     return found
 
 
