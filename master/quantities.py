@@ -337,6 +337,8 @@ TABLE: tuple[Quantity, ...] = (
     Quantity("largest_coil_current", "largest coil current", "A", Group.LEVITATION, Owner.RUN),
     Quantity("time_at_current_limit", "time at the current limit", "s", Group.LEVITATION, Owner.RUN),
     Quantity("time_at_voltage_limit", "time at the voltage limit", "s", Group.LEVITATION, Owner.RUN),
+    Quantity("time_at_controller_limit", "time at the controller's own limit", "s", Group.LEVITATION,
+             Owner.RUN),
     # requirements
     _text("requirements_met", "requirements met", Group.REQUIREMENTS),
     Quantity("margin", "margin to the requirement", "1", Group.REQUIREMENTS, Owner.REQUIREMENT,

@@ -93,6 +93,7 @@ class Outputs:
     )
     samples: float = real(0.0, "1", "used since the start", local=True)
     missed: float = real(0.0, "1", "samples of the bearing that were not used", local=True)
+    limited_time: float = real(0.0, "s", "time for which `limit` cut a set point", local=True)
 
 
 @dataclass(frozen=True)
@@ -160,7 +161,7 @@ def _judge(time, m):
 @kernel
 def _update(begin, answer, time, period, m):
     """Use one sample, taken at `time` (s), `period` (s) after the last one."""
-    p, s, lead = m.p, m.s, 0.0
+    p, s, lead, is_cut = m.p, m.s, 0.0, False
     _follow(begin, time, m)
     if s.led >= 0.0 and p.ramp > 0.0:
         lead = max(1.0 - (time - s.led) / p.ramp, 0.0)
@@ -168,6 +169,7 @@ def _update(begin, answer, time, period, m):
         answer(lead, period, m)
     for k in range(AXES):
         o, later = m.o.axis[k], s.next[k]
+        is_cut = is_cut or (s.on == 1 and abs(s.asked[k]) > p.limit)
         now_set, now_on = limited(s.asked[k], p.limit) if s.on == 1 else 0.0, float(s.on)
         if p.delay == 1:
             o.set, later.set, o.enable, later.enable = later.set, now_set, later.enable, now_on
@@ -175,6 +177,7 @@ def _update(begin, answer, time, period, m):
             o.set, o.enable = now_set, now_on
     _judge(time, m)
     m.o.samples += 1.0
+    m.o.limited_time += period if is_cut else 0.0
 
 
 @kernel

@@ -44,6 +44,7 @@ COILS = {  # of an actuator: the variable, of which the largest over all counts
     "time_at_current_limit": "limits.current_time",
     "time_at_voltage_limit": "limits.voltage_time",
 }
+LIMITED = "limited_time"  # s, of a controller: for how long its own limit cut a set point
 
 
 class Fate(StrEnum):
@@ -190,8 +191,9 @@ def add_captures(
 
 
 def coils(system: ReadableSystem) -> dict[str, object]:
-    """Of all actuators' coils over the run; nothing where there is no actuator."""
-    values = {key: _values_of(system, variable) for key, variable in COILS.items()}
+    """What actuators and controllers went through over the run; nothing where there are none."""
+    variables = COILS | {"time_at_controller_limit": LIMITED}
+    values = {key: _values_of(system, variable) for key, variable in variables.items()}
     return {key: max(found) for key, found in values.items() if found}
 
 

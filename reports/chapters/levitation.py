@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ...master.common.text import joined
 from ...master.quantities import named
-from ...master.results.capture import COILS, COMMANDED, GAP, captures
+from ...master.results.capture import COILS, COMMANDED, GAP, LIMITED, captures
 from ..charts import series
 from ..layout import Absent, Data
 from ..numbers import digits, heads, quantity
@@ -77,6 +77,7 @@ def _by_sensors(subject: Subject, controllers: list[str]) -> list[list[str]]:
             when(name, COMMANDED),
             when(name, CAPTURED),
             digits(subject.run.system.value(f"{name}.{MISSED}")),
+            quantity(subject.run.system.value(f"{name}.{LIMITED}"), "s", 3),
         ]
         for name in controllers
     ]

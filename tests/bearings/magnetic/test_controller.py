@@ -111,6 +111,10 @@ def test_anti_windup_keeps_the_integral():
         assert sample(one, 1e-3)[0] >= -1.0
     assert one.record["s"]["channel"][0]["integral"] > -1.0
     assert sample(one, -1e-4)[0] == 1.0
+    assert one.record["o"]["limited_time"] == pytest.approx(10_001 * PERIOD)  # at each sample so far
+    for _ in range(100):
+        sample(one, -1e-6)
+    assert one.record["o"]["limited_time"] < 10_051 * PERIOD  # not while the set points are small
 
 
 def test_states_follow_the_events_and_the_rotor():
