@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...master.common.errors import TouchdownError, one_of
-from ...master.common.text import aligned, display_value
+from ...master.common.text import aligned, variable_unit
 from ...modelkit.units import display_unit, per_display
 from ..api import machines
 from ..console import warn
@@ -117,7 +117,7 @@ def _as_shown(variable: ScalarVariable, value: float) -> tuple[str, str, str]:
     if variable.choices:
         return variable.in_words(value), "", ""
     unit = variable.unit or "1"
-    shown = unit if display_value(variable.name, 0.0)[1] == "Hz" else display_unit(unit, value)
+    shown = variable_unit(variable.name, unit, value)
     factor = per_display(unit, shown)
     ends = (("from", variable.minimum), ("to", variable.maximum))
     bounds = " ".join(f"{word} {factor * bound:g}" for word, bound in ends if bound is not None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from ...modelkit.units import per_display
+from ...modelkit.units import display_unit, per_display
 
 RPM = per_display("rad/s", "rpm")  # of one rad/s
 HZ = 1.0 / (2.0 * math.pi)  # of one rad/s
@@ -29,6 +29,15 @@ def display_value(name: str, value: float) -> tuple[float, str]:
     ((300.0, 'rpm'), (5.0, 'Hz'))
     """
     return (HZ * value, "Hz") if name.endswith(IN_HERTZ) else (60.0 * HZ * value, "rpm")
+
+
+def variable_unit(name: str, unit: str, size: float) -> str:
+    """The unit in which people read values of about `size` of a variable, in the SI unit `unit`.
+
+    >>> variable_unit("amb.bandwidth", "rad/s", 6e3), variable_unit("rotor.speed", "rad/s", 6e3)
+    ('Hz', 'rpm')
+    """
+    return "Hz" if unit == "rad/s" and name.endswith(IN_HERTZ) else display_unit(unit, size)
 
 
 def as_given(value: object, unit: str | None, name: str = "") -> str:

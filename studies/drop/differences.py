@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...master.common.errors import TouchdownError
-from ...master.common.text import aligned
+from ...master.common.text import aligned, variable_unit
 from ...master.components.component import ScalarVariable, value_of
 from ...master.quantities import Item, Summary, summary_items
 from ...master.results.final_state import Finished
@@ -20,7 +20,7 @@ from ...master.results.table import WIDEST, shown_value
 from ...master.scene.run_spec import UNITS
 from ...master.scene.scene import Scene
 from ...modelkit.errors import require
-from ...modelkit.units import display_unit, per_display, to_si
+from ...modelkit.units import per_display, to_si
 from ...reports.figures.overlay import overlays
 from ..findings import Findings
 from ..sweep.definition import DEFINITION_FILE
@@ -165,7 +165,7 @@ def _in_si(name: str, value: object, unit: str | None, of: ScalarVariable | None
 def _written(values: Sequence[float | str], unit: str | None, of: ScalarVariable | None) -> list[str]:
     """Numbers in the unit in which people read the largest of them, or by words; long texts are cut."""
     largest = max((abs(v) for v in values if isinstance(v, float)), default=0.0)
-    shown = display_unit(unit or "1", largest)
+    shown = variable_unit(of.name if of else "", unit or "1", largest)
     factor, behind = per_display(unit or "1", shown), "" if shown == "1" else f" {shown}"
     texts = [
         v if isinstance(v, str) else of.in_words(v) if of and of.choices else f"{factor * v:.6g}{behind}"
