@@ -230,7 +230,7 @@ def reopened(folder: Path) -> Result:
         raise TouchdownError(
             f"{folder} is not a run's folder, it holds {len(runs)} of them; give one, such as {runs[0]}"
         )
-    summary = _values(folder, SUMMARY_FILE, "no run left it, or its run was killed or goes on")
+    summary = _values(folder, SUMMARY_FILE, "a study left it, or its run was killed or goes on")
     final = _values(folder, ENDING_FILE, "an earlier version left it; run the scene again")
     scene = _values(folder, SCENE, "run the scene again")
     if not (folder / RECORDING).is_file():
