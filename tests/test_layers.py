@@ -45,7 +45,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "bearings": 20950,
     "modelkit": 4180,
     "fmus": 3450,
-    "master": 21070,
+    "master": 21080,
     "studies": 13250,
     "reports": 6440,
     "command": 3600,
