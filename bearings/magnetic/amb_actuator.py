@@ -25,10 +25,10 @@ from ...modelkit.variables import Choices, choice, group, groups, integer, real
 from .. import seat
 from ..excitation import Lines
 from . import amplifier, law, magnet, sensing
-from .amplifier import ALWAYS, AXES, COILS, NOTHING, Amplifier, AmplifierEvent, PartState, Supply
+from .amplifier import ALWAYS, AXES, COIL_OFF, COILS, NOTHING, Amplifier, AmplifierEvent, PartState, Supply
 from .injection import Injection, injected
 from .law import ROUNDING, limited
-from .magnet import Circuit, Magnet
+from .magnet import EDDIES, EDDY_DIRECT, EDDY_FACTORS, EDDY_RATES, Circuit, Magnet
 from .sensing import Sensor
 
 FLUX = seat.INSIDE  # flux linkages of the four coils, V s
@@ -36,6 +36,7 @@ RESET = FLUX + COILS  # integrals of the current controls, A s
 SENSE = RESET + COILS  # the sensors' low-pass, m
 SUPPLIED, TAKEN, AT_CURRENT, AT_VOLTAGE = range(SENSE + 2, SENSE + 6)  # J, J, s, s
 SIZE = SENSE + 6
+EDDY, EDDY_LOSS = SIZE, SIZE + COILS * EDDIES  # linkages of the eddy currents, V s; their heat, J
 EVENTS = 8
 COMMANDS = Choices("Command", ("current", "force"))
 CURRENT_SCALE = 0.1  # A; an error of the current that matters
@@ -106,6 +107,7 @@ class Outputs(magnet.Factors):
     link: float = real(0.0, "V", "voltage of the DC link", local=True)
     supplied: float = real(0.0, "J", "work of the magnets on the rotor since the start", local=True)
     link_energy: float = real(0.0, "J", "that the coils took of the DC link since the start", local=True)
+    eddy_loss: float = real(0.0, "J", "heat of the eddy currents since the start", local=True)
     peak_current: float = real(0.0, "A", "largest of any coil since the start", local=True)
     least_gap: float = real(0.0, "m", "smallest air gap to the magnets since the start", local=True)
     limits: _LimitTimes = group(_LimitTimes)
@@ -129,7 +131,7 @@ class Hidden:
     link_off: float = real(ALWAYS, "s", "when the link was cut off; below zero: it is on")
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, SIZE, Circuit, Hidden, Inputs)
+MEMORY = seat.bearing_memory(Parameters, Outputs, EDDY_LOSS + 1, Circuit, Hidden, Inputs)
 
 
 @kernel
@@ -141,12 +143,15 @@ def displacement(t, q, m):
 
 
 @kernel
-def coil_state(coil, flux, integral, gap, volt, m):
+def coil_state(coil, q, gap, volt, m):
     """Of a coil: voltage (V), current (A), rate of its integral (A), current cut off, voltage at its limit.
 
-    flux (V s), integral (A s), gap (m); volt: the link's voltage (V).
+    gap (m); volt: the link's voltage (V).
     """
+    flux, integral = q[FLUX + coil], q[RESET + coil]
     i = magnet.current_of(flux, gap, m.p.magnet, m.d)
+    if m.d.eddy > 0.0:
+        return _with_eddies(coil, i, q, volt, m)
     axis, p = m.s.axis[coil // 2], m.p.amplifier
     if m.s.coil[coil].fault != NOTHING:
         return amplifier.failed_voltage(m.s.coil[coil].fault, flux, volt), i, 0.0, False, False
@@ -160,19 +165,59 @@ def coil_state(coil, flux, integral, gap, volt, m):
 
 
 @kernel
+def _with_eddies(coil, settled, q, volt, m):
+    """As `coil_state`; settled: current (A) without eddy currents.
+
+    A coil whose amplifier is off is emptied as by a set point of 0: its current ends before its flux does.
+    """
+    p, fault, target, integral, cut = m.p.amplifier, m.s.coil[coil].fault, 0.0, q[RESET + coil], False
+    on = fault == NOTHING and m.s.axis[coil // 2].enable > 0.5
+    if on:
+        target, cut = amplifier.set_point(coil, m.s.axis[coil // 2].set, p)
+    if fault != NOTHING:
+        integral = 0.0
+    gain, direct, held = p.bandwidth * m.d.inductance, m.d.eddy * EDDY_DIRECT, settled
+    for k in range(EDDIES):
+        held += m.d.eddy * EDDY_FACTORS[k] * (q[FLUX + coil] - q[EDDY + EDDIES * coil + k])
+    i = (held + gain * direct * (target + p.reset * integral)) / (1.0 + gain * direct)
+    v = p.resistance * i + gain * (target - i + p.reset * integral)
+    if fault != NOTHING and fault != COIL_OFF:
+        v = amplifier.failed_voltage(fault, q[FLUX + coil], volt)
+    elif -volt <= v <= volt:
+        return v, i, (target - i if fault == NOTHING else 0.0), cut, False
+    v = limited(v, volt)
+    return v, (held + direct * v) / (1.0 + direct * p.resistance), 0.0, cut, on
+
+
+@kernel
+def _eddy_rates(coil, rate, q, dq, m):
+    """Set dq of a coil's eddy currents, and add their heat (W); rate: of its flux linkage (V)."""
+    heat = EDDY_DIRECT * rate * rate
+    for k in range(EDDIES):
+        place = EDDY + EDDIES * coil + k
+        dq[place] = EDDY_RATES[k] * (q[FLUX + coil] - q[place])
+        heat += EDDY_FACTORS[k] * dq[place] * (q[FLUX + coil] - q[place])
+    dq[EDDY_LOSS] += m.d.eddy * heat
+
+
+@kernel
 def react(t, q, dq, m):
     """`Load` of the magnets (N); sets dq of what is inside; t (s) into what is being integrated."""
     t += m.s.done
     volt = amplifier.link_voltage(m.time + t, m.s.link_off, m.p.supply)
     u1, u2, y1, y2 = displacement(m.s.since + t, q, m)
     f1, f2, power, any_cut, any_full = 0.0, 0.0, 0.0, False, False
+    if m.d.eddy > 0.0:
+        dq[EDDY_LOSS] = 0.0
     for coil in range(COILS):
         flux = q[FLUX + coil]
         gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
-        v, i, dq[RESET + coil], cut, full = coil_state(coil, flux, q[RESET + coil], gap, volt, m)
+        v, i, dq[RESET + coil], cut, full = coil_state(coil, q, gap, volt, m)
         any_cut, any_full = any_cut or cut, any_full or full
         rate = v - m.p.amplifier.resistance * i
         dq[FLUX + coil] = 0.0 if flux <= 0.0 and rate < 0.0 else rate  # amplifiers drive one way only
+        if m.d.eddy > 0.0:
+            _eddy_rates(coil, dq[FLUX + coil], q, dq, m)
         power += v * i
         pull = m.d.pull * squared(max(flux, 0.0))
         pull = pull if coil % 2 == 0 else -pull
@@ -203,7 +248,11 @@ def observe(t, q, m):
     u1, u2, _, _ = displacement(m.s.since + m.s.done + t, q, m)
     for coil in range(COILS):
         gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
-        m.o.peak_current = max(m.o.peak_current, magnet.current_of(q[FLUX + coil], gap, m.p.magnet, m.d))
+        i = magnet.current_of(q[FLUX + coil], gap, m.p.magnet, m.d)
+        if m.d.eddy > 0.0:
+            volt = amplifier.link_voltage(m.time + m.s.done + t, m.s.link_off, m.p.supply)
+            _, i, _, _, _ = coil_state(coil, q, gap, volt, m)
+        m.o.peak_current = max(m.o.peak_current, i)
     m.o.least_gap = min(m.o.least_gap, m.p.magnet.gap - math.sqrt(u1 * u1 + u2 * u2))
 
 
@@ -247,7 +296,7 @@ def report(q, m):
     u1, u2, _, _ = displacement(m.s.since + 2.0 * m.half, q, m)
     for coil in range(COILS):
         gap, o = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d), m.o.axis[coil // 2]
-        v, i, _, _, _ = coil_state(coil, q[FLUX + coil], q[RESET + coil], gap, volt, m)
+        v, i, _, _, _ = coil_state(coil, q, gap, volt, m)
         if coil % 2 == 0:
             o.voltage_plus, o.current_plus = v, i
             o.force = m.d.pull * (squared(q[FLUX + coil]) - squared(q[FLUX + coil + 1]))
@@ -259,6 +308,7 @@ def report(q, m):
     m.o.tick = m.s.ticks
     m.o.link, m.o.supplied, m.o.link_energy = volt, q[SUPPLIED], q[TAKEN]
     m.o.limits.current_time, m.o.limits.voltage_time = q[AT_CURRENT], q[AT_VOLTAGE]
+    m.o.eddy_loss = q[EDDY_LOSS] if m.d.eddy > 0.0 else 0.0
 
 
 @kernel
@@ -267,10 +317,12 @@ def derive(words):
     m = words.view(MEMORY)[0]
     magnet.lay_out_circuit(m.d, m.p.magnet, m.p.amplifier.bias)
     seat.set_weights(m.weight)
-    m.n = SIZE
+    m.n = EDDY_LOSS + 1 if m.d.eddy > 0.0 else SIZE
     for coil in range(COILS):
         m.weight[FLUX + coil] = 1.0 / (CURRENT_SCALE * m.d.inductance)
         m.weight[RESET + coil] = m.p.amplifier.reset / CURRENT_SCALE
+        for k in range(EDDIES if m.d.eddy > 0.0 else 0):
+            m.weight[EDDY + EDDIES * coil + k] = m.weight[FLUX + coil]
     m.weight[SENSE] = m.weight[SENSE + 1] = 1.0 / SIGNAL_SCALE
     return amplifier.event_problem(m.p.event, m.message_numbers)
 
@@ -294,6 +346,8 @@ def start(words):
         target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].set, m.p.amplifier)
         gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
         m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
+        for k in range(EDDIES if m.d.eddy > 0.0 else 0):
+            m.q[EDDY + EDDIES * coil + k] = m.q[FLUX + coil]
     m.q[SENSE], m.q[SENSE + 1] = y1, y2
     sample(m.time, m.q, m)
     amplifier.let_happen(m.p.event, m.time - ROUNDING, m.s)

@@ -29,7 +29,7 @@ from ...modelkit.variables import as_record, flatten, from_values, layout
 from . import amplifier, magnet
 from .amplifier import Amplifier
 from .law import Channel, ChannelMemory, FilterSection, Gain, update
-from .magnet import Magnet
+from .magnet import EDDIES, EDDY_DIRECT, EDDY_FACTORS, EDDY_RATES, Magnet
 from .sensing import Sensor
 
 Values = Callable[[str], float]  # of a component's parameters, by name, SI
@@ -61,7 +61,8 @@ class Coil:
 class LinearActuator:
     """An axis of `amb_actuator` about its operating point.
 
-    Its state is s (m), then the flux linkages of its coils (V s), and with w_r their zeta (A s).
+    Its state is s (m), then the flux linkages of its coils (V s), with w_r their zeta (A s), and with eddy
+    currents the linkages of their windings (V s).
     """
 
     magnet: Magnet
@@ -112,8 +113,8 @@ class LinearActuator:
 
     @property
     def states(self) -> int:
-        """One of the sensor; of each coil two with an integral part of the current control, else one."""
-        return 1 + len(self.coils) * (2 if self.amplifier.reset > 0.0 else 1)
+        """One of the sensor; of each coil one, one with an integral part, and those of eddy currents."""
+        return self._eddies + (EDDIES * len(self.coils) if self.circuit.eddy > 0.0 else 0)
 
     @property
     def force(self) -> np.ndarray:
@@ -124,45 +125,70 @@ class LinearActuator:
     @property
     def rates(self) -> np.ndarray:
         """Rates of the state per state (states, states)."""
-        n = len(self.coils)
-        every = np.zeros((1 + 2 * n, 1 + 2 * n))
-        every[0, 0] = -self.sensing.bandwidth
-        every[1:, 1 : 1 + n] = -self._by_error(np.diag([c.per_flux for c in self.coils]))
-        every[1 : 1 + n, 1 + n :] = self._gain * self.amplifier.reset * np.eye(n)
-        return every[: self.states, : self.states]
+        return self._rates[:, :-2]
 
     @property
     def moved(self) -> np.ndarray:
         """Rates of the state per displacement of the journal (states,), the sensor's apart."""
-        return np.append(0.0, -self._by_error(np.array([c.per_metre for c in self.coils])))[: self.states]
+        return self._rates[:, -2]
 
     @property
     def driven(self) -> np.ndarray:
         """Rates of the state per control current (states,)."""
-        follow = np.array([c.sign if c.follows else 0.0 for c in self.coils])
-        return np.append(0.0, self._by_error(follow))[: self.states]
+        return self._rates[:, -1]
 
     def electrical(self, state: np.ndarray, u: complex, control: complex) -> tuple[np.ndarray, np.ndarray]:
         """Amplitudes of the coils' currents (A) and voltages (V).
 
         By those of the state (states,), the journal's displacement u (m) and the control current (A).
         """
-        n = len(self.coils)
-        fluxes, integrals = state[1 : 1 + n], np.append(state[1 + n :], np.zeros(n))[:n]
-        currents = np.array([c.per_flux for c in self.coils]) * fluxes
-        currents = currents + np.array([c.per_metre for c in self.coils]) * u
-        follow = np.array([c.sign if c.follows else 0.0 for c in self.coils])
-        error = follow * control - currents + self.amplifier.reset * integrals
-        return currents, self.amplifier.resistance * currents + self._gain * error
+        by = np.append(state, [u, control])
+        currents = self._currents @ by
+        return currents, self.amplifier.resistance * currents + self._rates[1 : 1 + len(self.coils)] @ by
+
+    @property
+    def _eddies(self) -> int:
+        """Which of the states is the first of the eddy currents, those of a coil one after another."""
+        return 1 + len(self.coils) * (2 if self.amplifier.reset > 0.0 else 1)
+
+    @property
+    def _wanted(self) -> np.ndarray:
+        """What currents follow, as `_currents`: set points, and errors' integrals times w_r."""
+        n, found = len(self.coils), np.zeros((len(self.coils), self.states + 2))
+        found[:, -1] = [c.sign if c.follows else 0.0 for c in self.coils]
+        if self.amplifier.reset > 0.0:
+            found[:, 1 + n : 1 + 2 * n] = self.amplifier.reset * np.eye(n)
+        return found
+
+    @property
+    def _currents(self) -> np.ndarray:
+        """Currents (A) of the coils per state, displacement and control current (coils, states + 2)."""
+        n, eddy = len(self.coils), self.circuit.eddy
+        held, direct = np.zeros((n, self.states + 2)), self._gain * eddy * EDDY_DIRECT
+        held[:, 1 : 1 + n] = np.diag([c.per_flux + eddy * sum(EDDY_FACTORS) for c in self.coils])
+        held[:, -2] = [c.per_metre for c in self.coils]
+        if eddy > 0.0:
+            held[:, self._eddies : -2] = np.kron(np.eye(n), -eddy * EDDY_FACTORS)
+        return (held + direct * self._wanted) / (1.0 + direct)
+
+    @property
+    def _rates(self) -> np.ndarray:
+        """Rates of the state per state, displacement and control current (states, states + 2)."""
+        n, first, found = len(self.coils), self._eddies, np.zeros((self.states, self.states + 2))
+        found[0, 0] = -self.sensing.bandwidth
+        found[1 : 1 + n] = self._gain * (self._wanted - self._currents)
+        if self.amplifier.reset > 0.0:
+            found[1 + n : 1 + 2 * n] = -self._currents
+            found[1 + n : 1 + 2 * n, -1] += self._wanted[:, -1]
+        if self.circuit.eddy > 0.0:
+            found[first:, 1 : 1 + n] = np.kron(np.eye(n), EDDY_RATES[:, None])
+            found[first:, first:-2] = -np.diag(np.tile(EDDY_RATES, n))
+        return found
 
     @property
     def _gain(self) -> float:
         """w_a L0, V/A."""
         return self.amplifier.bandwidth * self.circuit.inductance
-
-    def _by_error(self, errors: np.ndarray) -> np.ndarray:
-        """Rates of fluxes and integrals by the errors of the coils' currents (A), a row each."""
-        return np.concatenate((self._gain * errors, errors))
 
     def shortfalls(self, control: float = 0.0, fluxes: Sequence[float] = ()) -> Iterator[str]:
         """What the limits do not allow, or change, a line each.

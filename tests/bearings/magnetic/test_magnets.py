@@ -7,6 +7,7 @@ import math
 import levitation as lev
 import numpy as np
 import pytest
+from scipy.special import erfcx
 
 from touchdown.bearings.magnetic import amb_actuator
 from touchdown.bearings.magnetic.amplifier import (
@@ -20,6 +21,7 @@ from touchdown.bearings.magnetic.amplifier import (
     SENSOR_ON,
     SENSOR_STUCK,
 )
+from touchdown.bearings.magnetic.magnet import EDDIES, EDDY_DIRECT, EDDY_FACTORS, EDDY_RATES
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import ModelError, StepSizeError
 
@@ -95,17 +97,24 @@ def test_slew_is_limited_by_the_voltage():
 
 
 @pytest.mark.parametrize(
-    ("pole", "limit", "resistance", "within"), [(lev.POLE, lev.SATURATED, 2.0, 3e-7), (1.2, 0.5, 0.0, 1e-5)]
+    ("pole", "limit", "resistance", "eddies", "within"),
+    [
+        (lev.POLE, lev.SATURATED, 2.0, 0.0, 3e-7),
+        (1.2, 0.5, 0.0, 0.0, 1e-5),
+        (lev.POLE, 0.5, 0.0, 2000.0, 1e-5),
+    ],
 )
 def test_what_the_link_gives_is_heat_field_and_the_rotor_s_work(
-    pole: float, limit: float, resistance: float, within: float
+    pole: float, limit: float, resistance: float, eddies: float, within: float
 ):
     """Along a driven path of both axes, with both currents driven: nothing is lost or made.
 
     Motion is straight and set points are constant over two steps, so that Simpson's rule is smooth; where
-    the iron saturates on the way (0.5 T) it is not, and the coils have no resistance.
+    the iron saturates on the way (0.5 T) or currents jump by eddy currents it is not, and the coils have no
+    resistance.
     """
-    one = held(steps=0, magnet__pole_angle=pole, magnet__flux_limit=limit, amplifier__resistance=resistance)
+    settings = {"magnet__pole_angle": pole, "magnet__flux_limit": limit, "magnet__eddy_bandwidth": eddies}
+    one = held(steps=0, amplifier__resistance=resistance, **settings)
     journal, axes, out = one.record["u"]["journal"], one.record["u"]["axis"], one.record["o"]
     step, pairs = 5e-6, 2000
     path = 1.5e-4 * np.exp(2j * math.pi * np.arange(pairs + 1) / 400) * np.linspace(0.0, 1.0, pairs + 1)
@@ -119,7 +128,10 @@ def test_what_the_link_gives_is_heat_field_and_the_rotor_s_work(
         gaps = [lev.GAP - s * math.cos(pole) * u for u in (place.real, place.imag) for s in (1, -1)]
         fluxes = one.record["q"][amb_actuator.FLUX : amb_actuator.FLUX + 4]
         over = np.maximum(fluxes / (200.0 * lev.AREA) - limit, 0.0)
-        return float(np.sum(fluxes**2 * gaps / (4 * lev.K) + 0.1 * lev.AREA * over**2 / (2 * lev.MU0)))
+        found = np.sum(fluxes**2 * gaps / (4 * lev.K) + 0.1 * lev.AREA * over**2 / (2 * lev.MU0))
+        windings = one.record["q"][amb_actuator.EDDY :][: 4 * EDDIES].reshape(4, EDDIES)
+        lags = (fluxes[:, None] - windings) ** 2 if eddies else 0.0 * windings
+        return float(found + 0.5 * float(one.record["d"]["eddy"]) * np.sum(lags * EDDY_FACTORS))
 
     begun, copper = field(), 0.0
     for k in range(pairs):
@@ -136,8 +148,58 @@ def test_what_the_link_gives_is_heat_field_and_the_rotor_s_work(
     journal["x"], journal["y"] = path[-1].real, path[-1].imag
     worked = float(out["supplied"])
     assert abs(worked) > 5e-4
-    left = float(out["link_energy"]) - copper - (field() - begun)
+    left = float(out["link_energy"]) - copper - (field() - begun) - float(out["eddy_loss"])
+    assert (float(out["eddy_loss"]) > 2.0 * abs(worked)) == (eddies > 0.0)
     assert left == pytest.approx(worked, rel=within)
+
+
+def half_order(omega: np.ndarray) -> np.ndarray:
+    """sqrt(j omega) by the windings."""
+    s = 1j * omega[:, None]
+    return EDDY_DIRECT * s[:, 0] + np.sum(np.array(EDDY_FACTORS) * s / (s + np.array(EDDY_RATES)), axis=1)
+
+
+def test_windings_are_a_half_order_derivative():
+    """Its largest error from 1 Hz to 10 kHz, as stated."""
+    omega = 2 * math.pi * np.geomspace(1.0, 1e4, 5000)
+    error = np.abs(half_order(omega) / np.sqrt(1j * omega) - 1.0)
+    assert error.max() == pytest.approx(0.0058, abs=1e-4)
+
+
+@pytest.mark.parametrize("hertz", [5.0, 100.0, 1000.0, 5000.0])
+def test_eddy_currents_hold_the_force_back_by_half_an_order(hertz: float):
+    """Force over current k_i/(1 + sqrt(j w/w_e)); 0.6 % of the windings' sum, the rest of steps."""
+    corner, steps = 2 * math.pi * 300.0, 1000
+    one = held(steps=0, sample_time=0.0, magnet__eddy_bandwidth=corner)
+    axis, omega, step = one.record["o"]["axis"][0], 2 * math.pi * hertz, 1.0 / (hertz * steps)
+    found = []
+    for k in range(4 * steps):
+        one.record["u"]["axis"][0]["set"] = 0.2 * math.sin(omega * (k + 0.5) * step)
+        one.step(k * step, step)
+        found.append((axis["force"], axis["current_plus"] - axis["current_minus"]))
+    turns = np.exp(-2j * math.pi * np.arange(steps) / steps)
+    force, current = np.array(found[-steps:]).T @ turns
+    expected = lev.K_I / (1 + np.sqrt(1j * omega / corner))
+    assert abs(2.0 * force / current / expected - 1.0) < 1e-2
+
+
+def test_flux_outlives_the_current_of_a_coil_that_is_off():
+    """lambda_0 exp(w_e t) erfc(sqrt(w_e t)) after a current that ends at once, here within 20 us."""
+    corner, off = 2 * math.pi * 300.0, 0.1e-3
+    fast = {"amplifier__bandwidth": 4e5, "supply__voltage": 2000.0, "magnet__eddy_bandwidth": corner}
+    one = held(steps=0, sample_time=0.0, **fast)
+    event = one.record["p"]["event"][0]
+    event["time"], event["kind"], event["coil"] = off, COIL_OFF, 2
+    for k in range(60):
+        one.step(k * STEP, STEP)
+        if k in (9, 19, 59):
+            assert abs(one.record["o"]["axis"][0]["current_minus"]) < 1e-3
+            left = one.record["q"][amb_actuator.FLUX + 1] / (lev.L0 * lev.BIAS)
+            assert left == pytest.approx(erfcx(math.sqrt(corner * ((k + 1) * STEP - off))), rel=1e-2)
+
+
+def test_without_eddy_currents_their_states_are_not_there():
+    assert held(steps=0).record["n"] == amb_actuator.SIZE
 
 
 def test_a_coil_whose_amplifier_failed_is_emptied_by_the_link():

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 import pytest
 
 from touchdown.bearings.magnetic import amb_actuator
-from touchdown.bearings.magnetic.amb_actuator import FLUX, RESET, SENSE
+from touchdown.bearings.magnetic.amb_actuator import EDDY, FLUX, RESET, SENSE
 from touchdown.bearings.magnetic.linear import SIGNAL, LinearActuator
+from touchdown.bearings.magnetic.magnet import EDDIES
 from touchdown.modelkit.instance import Instance
 
 LOADS = {  # N down, and settings
@@ -22,6 +24,8 @@ LOADS = {  # N down, and settings
     "one saturated": (24.0, {"magnet.flux_limit": 0.5, "amplifier.reset": 300.0}),
     "at the limit": (16.2, {"amplifier.bias": 8.0}),
     "upwards": (-40.0, {"magnet.angle": 1.0}),
+    "eddies": (16.2, {"magnet.eddy_bandwidth": 2000.0}),
+    "eddies, integral": (16.2, {"magnet.eddy_bandwidth": 500.0, "amplifier.reset": 800.0}),
 }
 
 
@@ -69,10 +73,15 @@ def derivative(one: Instance, axis: int, where: str, at: int, by: float) -> np.n
         one.model.instant(0.0, q, dq, one.words)
         out = one.record["o"]["journal"]
         own = [FLUX + 2 * (axis - 1), FLUX + 2 * axis - 1, SENSE + axis - 1]
-        own += [RESET + 2 * (axis - 1), RESET + 2 * axis - 1]
+        own += [RESET + 2 * (axis - 1), RESET + 2 * axis - 1, *eddies(axis, (0, 1))]
         found.append(np.append(dq[own], along[0] * out["fx"] + along[1] * out["fy"]))
         journal["x"], journal["y"] = 0.0, 0.0
     return (found[0] - found[1]) / (2.0 * by)
+
+
+def eddies(axis: int, coils: Iterable[int]) -> list[int]:
+    """Where the state has the eddy currents of coils (0: +, 1: -) of an axis."""
+    return [EDDY + EDDIES * (2 * (axis - 1) + coil) + k for coil in coils for k in range(EDDIES)]
 
 
 @pytest.mark.parametrize(("name", "axis"), [(name, 1 + i % 2) for i, name in enumerate(LOADS)])
@@ -81,14 +90,18 @@ def test_the_linear_actuator_is_the_derivative_of_the_model(name: str, axis: int
     one = loaded(*LOADS[name])
     lin, inductance = linear(one, axis), float(one.record["d"]["inductance"])
     carry = [0 if c.sign > 0 else 1 for c in lin.coils]
-    rows = [2, *carry, *(3 + k for k in carry)][: lin.states]  # of `derivative`, in the state's order
+    integrals = carry if lin.amplifier.reset > 0.0 else []
+    windings = [5 + EDDIES * k + n for k in carry for n in range(EDDIES)]
+    rows = [2, *carry, *(3 + k for k in integrals), *windings][: lin.states]  # of `derivative`, in order
     first = 2 * (axis - 1)
-    places = [SENSE + axis - 1, *(FLUX + first + k for k in carry), *(RESET + first + k for k in carry)]
-    small = [1e-6, *(1e-5 * inductance for _ in carry), *(1e-6 for _ in carry)]
+    places = [SENSE + axis - 1, *(FLUX + first + k for k in carry), *(RESET + first + k for k in integrals)]
+    places += eddies(axis, carry)
+    small = [1e-6, *(1e-5 * inductance for _ in carry), *(1e-6 for _ in integrals)]
+    small += [1e-5 * inductance] * len(windings)
     for column in range(lin.states):
         d = derivative(one, axis, "q", places[column], small[column])
         assert d[rows] == pytest.approx(lin.rates[:, column], rel=1e-6, abs=1e-6 * np.abs(lin.rates).max())
-        assert d[5] == pytest.approx(lin.force[column], rel=1e-6, abs=1e-9)
+        assert d[-1] == pytest.approx(lin.force[column], rel=1e-6, abs=1e-9)
     moved = lin.moved.copy()
     moved[SIGNAL] = lin.sensing.bandwidth
     d = derivative(one, axis, "u", 0, 1e-7)

@@ -147,6 +147,15 @@ def test_a_rotor_rings_at_the_poles_of_its_operating_point(
     assert nearest_root(x, pole, 4) < (1e-4 if gravity else 1e-5)
 
 
+def test_a_rotor_rings_at_the_poles_with_eddy_currents():
+    """At 120 Hz they are as strong as the gaps: -27 1/s, without them -110 1/s."""
+    scene = Loop().scene(60e-3, 20e-6).set({"amb.magnet.eddy_bandwidth": 240 * math.pi})
+    poles = loops_of(scene.set({"rotor.gravity": 0.0})).closed(0.0).poles
+    rings = poles[(poles.imag > 100.0) & (poles.imag < 1000.0)]
+    assert rings[0].real == pytest.approx(-27.08, abs=0.01)
+    assert nearest_root(ring(scene, 60e-3)[30:430], complex(rings[0]), 8) < 1e-5
+
+
 def test_a_run_starts_with_the_weight_held():
     """With less bias than holding current, too; what coupling leaves is below a nanometre."""
     scene = Loop().scene(20e-3, 20e-6).set({"amb.amplifier.bias": 0.4, "rotor.speed": 0.0})
