@@ -1,7 +1,8 @@
 """A multisine: lines at multiples of a frequency, with phases by Schroeder, which keep its peaks low.
 
 With `ratio` above 1 the lines are spread as on a logarithmic scale: each is the first multiple that is at
-least so many times the one before. All of them repeat themselves after one period of the frequency.
+least so many times the one before. All of them repeat themselves after one period of the frequency. What
+a square law makes of odd multiples is at even ones.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 from ..modelkit.kernel import kernel
-from ..modelkit.variables import integer, real
+from ..modelkit.variables import SWITCH, choice, integer, real
 
 ROUNDING = 1e-9  # of a line's number
 
@@ -25,12 +26,14 @@ class Lines:
     first: int = integer(1, "multiple of the first line", minimum=1)
     count: int = integer(1, "lines", minimum=1)
     ratio: float = real(1.0, "1", "of a line to the one before, at least", minimum=1.0, needs="count > 1")
+    odd: int = choice(0, SWITCH, "whether the lines after the first are odd multiples", needs="count > 1")
 
 
 @kernel
 def next_line(line, p):
     """The multiple that comes after `line`."""
-    return max(line + 1, math.ceil(line * p.ratio - ROUNDING))
+    following = max(line + 1, math.ceil(line * p.ratio - ROUNDING))
+    return following + 1 if p.odd == 1 and following % 2 == 0 else following
 
 
 @kernel

@@ -46,9 +46,9 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "modelkit": 4180,
     "fmus": 3450,
     "master": 21080,
-    "studies": 13250,
+    "studies": 13500,
     "reports": 6440,
-    "command": 3600,
+    "command": 3610,
     "validation": 4400,
 }
 MODELS = "modules that define a MODEL"
@@ -115,6 +115,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     },
     "touchdown.bearings.angular": {"touchdown.studies.machine", "touchdown.master.results.clamped_pairs"},
     "touchdown.bearings.magnetic": {"touchdown.studies.loop"},
+    "touchdown.bearings.excitation": {"touchdown.studies.loop"},
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,
     "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.reports.chapters.heat"},

@@ -322,18 +322,27 @@ def whirl(
     return prediction
 
 
-def amb_margins(scene: PathLike | Scene, folder: PathLike | None = None, *, speeds: Spins = ()) -> Found:
+def amb_margins(
+    scene: PathLike | Scene,
+    folder: PathLike | None = None,
+    *,
+    speeds: Spins = (),
+    measure: bool = False,
+    amplitude: Length | None = None,
+) -> Found:
     """Compute sensitivity, margins, poles and unbalance response of a scene's magnetic bearings.
 
     folder: for pictures (sensitivity, Campbell diagram, Bode, Nyquist, unbalance response), `answers.csv`,
         `unbalance.csv`, and `loops.npz` with plant and controller as A, B, C, D
     speeds: of the rotor, such as "0 rpm, 9000 rpm" (default: up to 1.5 times the scene's)
+    measure: run the scene levitated, too, and measure its loops by multisines at the scene's speed
+    amplitude: of each line at the sensors that are measured (default: 0.1 um)
 
     `speeds` of what it returns has the loops' `margins` and `poles` at each, `faults` why they do not
     levitate the rotor, `to_pandas()` the worst loop over the speed; `unbalance` orbits, currents and
     voltages over the speed, `answers` L, S, plant, controller and compliance over the frequency, each with
-    `to_pandas()`; `plant`, `sampled_plant` and `controller` are scipy's StateSpace. Raises TouchdownError
-    where the scene has no magnetic bearing whose loop is known.
+    `to_pandas()`; `measured` has `answers` of the run; `plant`, `sampled_plant` and `controller` are
+    scipy's StateSpace. Raises TouchdownError where the scene has no magnetic bearing whose loop is known.
 
     >>> found = touchdown.amb_margins("disk-caged-relevitated", speeds=[0.0])
     >>> found.faults
@@ -342,11 +351,17 @@ def amb_margins(scene: PathLike | Scene, folder: PathLike | None = None, *, spee
     True
     """
     from ...master.common.units import to_si
+    from ...studies.loop.measured_response import AMPLITUDE
     from ...studies.loop.over_speed import loops_in
     from ...studies.loop.pictures import write_loops
 
     spins = [to_si(speed, "rad/s", "speeds") for speed in as_list(speeds)]
-    found = loops_in(as_scene(scene), spins)
+    size = AMPLITUDE if amplitude is None else to_si(amplitude, "m", "amplitude")
+    if size <= 0.0:
+        raise TouchdownError(f"amplitude = {amplitude} must be above 0 m")
+    if amplitude is not None and not measure:
+        raise TouchdownError("amplitude is of lines that measure injects; ask for measure, too")
+    found = loops_in(as_scene(scene), spins, size if measure else 0.0)
     if folder is not None:
         write_loops(found, Path(folder))
     return found

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...master.common.text import HZ, RPM, aligned, joined
+from ...master.common.text import HZ, RPM, aligned, joined, percent
 from .linear_loops import Controlled, MeasuredLaws, Sampled, shortfalls
 from .margins import zone
+from .measured_response import LOOP, Measured
 from .over_speed import AtSpeed, Found, damping_ratio, settled
 from .response import UnbalanceResponse
 from .response import zone as vibration_zone
@@ -44,6 +45,8 @@ def lines(found: Found) -> Iterator[str]:
     yield from aligned(rows, "<>><>", "  ")
     yield from (f"  {one.words()}" for one in found.required)
     yield "  zones by the limits 3, 4, 5 (9.5, 12, 14 dB) of ISO 14839-3, as secondary sources quote them"
+    if found.measured is not None:
+        yield from _measured(found.measured, nominal.speed)
     yield "\nover the speed, the worst loop, and the least damped pole:"
     head = "rpm", "max |S|", "zone", "damping ratio", "Hz"
     yield from aligned([head, *map(_worst, found.speeds)], ">><>", "  ")
@@ -55,6 +58,25 @@ def lines(found: Found) -> Iterator[str]:
         yield from aligned([("free Hz", "Hz", "damping ratio"), *modes], ">", "  ")
     yield f"\nleast damped poles at {RPM * nominal.speed:g} rpm:"
     yield from aligned([("real 1/s", "Hz", "damping ratio"), *_poles(nominal.poles)], ">", "  ")
+
+
+def _measured(found: Measured, speed: float) -> Iterator[str]:
+    """S beside that of the linear loops at the same lines, and what of the others is off."""
+    omega, size = HZ * found.answers.omega, f"{1e6 * found.amplitude:g} um, force {found.force:.3g} N"
+    yield (
+        f"\nmeasured in the nonlinear run at {RPM * speed:g} rpm, without events, unbalance and noise "
+        f"({len(omega)} lines from {omega[0]:.4g} to {omega[-1]:.4g} Hz, each {size}):"
+    )
+    rows = [["loop", "max |S|", "zone", "linear", "zone", "at Hz", *(f"{name} off %" for name in "SPCG")]]
+    for k, name in enumerate(found.answers.axes):
+        s, linear = (np.abs(each.values["S"][:, k]) for each in (found.answers, found.linear))
+        sizes = [text for one in (s, linear) for text in (f"{one.max():.4f}", zone(float(one.max())))]
+        off = [f"{100.0 * found.deviation(one, k):.2g}" for one in "SPCG"]
+        rows.append([name, *sizes, f"{omega[int(np.argmax(s))]:.4g}", *off])
+    yield from aligned(rows, "<><><>", "  ")
+    yield f"  linear and off: at these lines alone, largest deviation; of P where |L| is above {LOOP:g}"
+    yield f"  at half the amplitude S of the worst loop changes by {percent(found.halved)}"
+    yield from (f"  {line}" for line in found.remarks)
 
 
 def _worst(at_speed: AtSpeed) -> tuple[str, ...]:

@@ -31,6 +31,7 @@ from .linear_loops import (
     shortfalls,
 )
 from .margins import Margins, margins
+from .measured_response import Measured, measured_response
 from .response import CLEARANCE, UnbalanceResponse, unbalance_response
 from .transfer import Answers, answers, controlled, plant
 
@@ -82,6 +83,7 @@ class Found:
     loops: Loops
     speeds: tuple[AtSpeed, ...]
     clearance: float  # m, the smallest of the touchdown bearings; 0: unknown
+    measured: Measured | None = None  # in the nonlinear run, at the scene's speed; None: it was not
 
     @property
     def own(self) -> AtSpeed:
@@ -162,9 +164,10 @@ class Found:
         )
 
 
-def loops_in(scene: Scene, speeds: Sequence[float] = ()) -> Found:
+def loops_in(scene: Scene, speeds: Sequence[float] = (), amplitude: float = 0.0) -> Found:
     """The loops of `scene` at its own speed and at `speeds` (rad/s; none: `SHARES` of its own).
 
+    amplitude (m): of each line at the sensors, by which loops that levitate are measured, too; 0: none are.
     Raises TouchdownError where the scene has no magnetic bearing whose loop is known, or no rotor with it.
     """
     loops = loops_of(scene)
@@ -173,8 +176,11 @@ def loops_in(scene: Scene, speeds: Sequence[float] = ()) -> Found:
     requested = sorted({*(speeds or shares), *judged, loops.speed})
     with opened(scene, in_process=True, listening=False) as system:
         named = {f"{a.bearing}.{CLEARANCE}" for a in system.attachments if a.on_journal}
-        found = [system.value(name) for name in named if name in system]
-    return Found(scene, loops, tuple(_at(loops, speed) for speed in requested), min(found, default=0.0))
+        rooms = [system.value(name) for name in named if name in system]
+    found = Found(scene, loops, tuple(_at(loops, speed) for speed in requested), min(rooms, default=0.0))
+    if amplitude == 0.0 or found.faults:
+        return found
+    return replace(found, measured=measured_response(scene, controlled(loops), amplitude))
 
 
 def _at(loops: Loops, speed: float) -> AtSpeed:

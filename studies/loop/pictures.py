@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,10 +17,14 @@ from ...modelkit.kernel.writing import replacing, write
 from ...reports.figures.style import COLOURS, FAINT, GREY, save, sheet
 from .linear_loops import Sampled
 from .margins import WORST, ZONES
+from .measured_response import Measured
 from .over_speed import Found, damping_ratio
 from .response import ZONES as VIBRATION_ZONES
 from .response import UnbalanceResponse
 from .transfer import Answers
+
+if TYPE_CHECKING:
+    import pandas
 
 WIDTH, HEIGHT = 9.0, 4.0  # inch
 STYLES = ("-", "--", ":", "-.")
@@ -37,10 +41,10 @@ def write_loops(found: Found, folder: Path) -> None:
         figure = sheet(WIDTH, HEIGHT)
         draw(figure)
         save(figure, folder / f"{name}.png", dpi=110)
-    tables = {"answers": found.answers, "unbalance": found.unbalance}
+    tables = {"answers": _answers(found), "unbalance": found.unbalance and found.unbalance.to_pandas()}
     for name, table in tables.items():
         if table is not None:
-            write(folder / f"{name}.csv", table.to_pandas().to_csv())
+            write(folder / f"{name}.csv", table.to_csv())
     if isinstance(found.loops, Sampled):
         parts = {"plant": found.plant, "sampled_plant": found.sampled_plant, "controller": found.controller}
         matrices = {f"{name}.{key}": getattr(one, key) for name, one in parts.items() for key in "ABCD"}
@@ -49,11 +53,23 @@ def write_loops(found: Found, folder: Path) -> None:
             np.savez(file, **about, **matrices)
 
 
+def _answers(found: Found) -> pandas.DataFrame | None:
+    """Those of the linear loops; where they were measured, also at those lines, with those beside."""
+    import pandas
+
+    if found.answers is None or found.measured is None:
+        return found.answers and found.answers.to_pandas()
+    both = [one.to_pandas() for one in (found.answers, found.measured.linear)]
+    linear = pandas.concat(both).sort_index()
+    linear = linear[~linear.index.duplicated()]
+    return linear.join(found.measured.answers.to_pandas().add_prefix("measured "))
+
+
 def _pictures(found: Found) -> Iterator[tuple[str, Callable[[Figure], None]]]:
     yield "amb-margins", lambda figure: _sensitivity(figure, found)
     yield "campbell", lambda figure: _campbell(figure, found)
     if (answers := found.answers) is not None:
-        yield "bode", lambda figure: _bode(figure, answers)
+        yield "bode", lambda figure: _bode(figure, answers, found.measured)
         yield "nyquist", lambda figure: _nyquist(figure, answers)
     if (response := found.unbalance) is not None and np.isfinite(response.orbits).any():
         yield "unbalance", lambda figure: _unbalance(figure, response)
@@ -62,6 +78,11 @@ def _pictures(found: Found) -> Iterator[tuple[str, Callable[[Figure], None]]]:
 def _style(axis: int) -> dict[str, Any]:
     """Of an axis: a colour for its bearing, a line for its direction."""
     return {"color": COLOURS[axis // 2 % len(COLOURS)], "ls": STYLES[axis % 2], "lw": 1.2}
+
+
+def _dots(axis: int) -> dict[str, Any]:
+    """Of what was measured at an axis."""
+    return {**_style(axis), "ls": "", "marker": "o", "ms": 2.5}
 
 
 def _label(axes: Axes, x: str, y: str, title: str = "") -> None:
@@ -82,6 +103,9 @@ def _sensitivity(figure: Figure, found: Found) -> None:
     for k, name in enumerate(found.loops.names):
         size = np.abs(nominal.values[:, k]) if nominal.margins else np.full(len(nominal.omega), np.nan)
         left.semilogx(HZ * nominal.omega, _decibels(size), label=name, **_style(k))
+        if found.measured is not None:
+            answers = found.measured.answers
+            left.semilogx(HZ * answers.omega, _decibels(answers.values["S"][:, k]), **_dots(k))
         stable = [at_speed for at_speed in found.speeds if at_speed.margins]
         speeds = [RPM * at_speed.speed for at_speed in stable]
         peaks = [20 * math.log10(at_speed.margins[k].peak) for at_speed in stable]
@@ -137,8 +161,8 @@ PANELS = {  # of a Bode plot
 }
 
 
-def _bode(figure: Figure, answers: Answers) -> None:
-    """Gain and phase of loop, plant, controller and compliance, by axis."""
+def _bode(figure: Figure, answers: Answers, measured: Measured | None) -> None:
+    """Gain and phase of loop, plant, controller and compliance, by axis; dots: measured."""
     figure.set_size_inches(1.5 * WIDTH, 1.4 * HEIGHT)
     grid = figure.subplots(2, len(PANELS), sharex=True)
     for column, (name, title) in enumerate(PANELS.items()):
@@ -146,9 +170,14 @@ def _bode(figure: Figure, answers: Answers) -> None:
             values = answers.values[name][:, k]
             grid[0, column].semilogx(HZ * answers.omega, _decibels(values), label=axis, **_style(k))
             phase = np.degrees(np.unwrap(np.angle(values)))
-            grid[1, column].semilogx(
-                HZ * answers.omega, phase - 360.0 * round(phase[0] / 360.0), **_style(k)
-            )
+            phase -= 360.0 * round(phase[0] / 360.0)
+            grid[1, column].semilogx(HZ * answers.omega, phase, **_style(k))
+            if measured is not None:
+                ours, linear = (each.values[name][:, k] for each in (measured.answers, measured.linear))
+                lines = measured.answers.omega
+                grid[0, column].semilogx(HZ * lines, _decibels(ours), **_dots(k))
+                beside = np.degrees(np.angle(ours / linear)) + np.interp(lines, answers.omega, phase)
+                grid[1, column].semilogx(HZ * lines, beside, **_dots(k))
         _label(grid[0, column], "", "gain [dB]" if column == 0 else "", title)
         _label(grid[1, column], "frequency [Hz]", "phase [deg]" if column == 0 else "")
     grid[0, 0].legend(fontsize=7)
