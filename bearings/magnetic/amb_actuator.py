@@ -136,10 +136,10 @@ MEMORY = seat.bearing_memory(Parameters, Outputs, EDDY_LOSS + 1, Circuit, Hidden
 
 @kernel
 def displacement(t, q, m):
-    """Journal along both axes, then the sensed place (m), t (s) after the inputs."""
+    """Journal along both axes, and the sensed place (m), t (s) after the inputs."""
     ex, ey, sx, sy = sensing.sensed_places(t, q, m.u, m.p.sensing.at)
     c, s = m.d.cosine, m.d.sine
-    return c * ex + s * ey, c * ey - s * ex, c * sx + s * sy, c * sy - s * sx
+    return (c * ex + s * ey, c * ey - s * ex), (c * sx + s * sy, c * sy - s * sx)
 
 
 @kernel
@@ -201,17 +201,18 @@ def _eddy_rates(coil, rate, q, dq, m):
 
 
 @kernel
-def react(t, q, dq, m):
-    """`Load` of the magnets (N); sets dq of what is inside; t (s) into what is being integrated."""
-    t += m.s.done
-    volt = amplifier.link_voltage(m.time + t, m.s.link_off, m.p.supply)
-    u1, u2, y1, y2 = displacement(m.s.since + t, q, m)
+def drive(time, u, seen, q, dq, m):
+    """Forces (N) along the axes at a time (s); sets dq of what is inside but for the work.
+
+    u, seen: displacements of the journal and of the sensed place along each axis (m).
+    """
+    volt = amplifier.link_voltage(time, m.s.link_off, m.p.supply)
     f1, f2, power, any_cut, any_full = 0.0, 0.0, 0.0, False, False
     if m.d.eddy > 0.0:
         dq[EDDY_LOSS] = 0.0
-    for coil in range(COILS):
+    for coil in range(2 * len(u)):
         flux = q[FLUX + coil]
-        gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
+        gap = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d)
         v, i, dq[RESET + coil], cut, full = coil_state(coil, q, gap, volt, m)
         any_cut, any_full = any_cut or cut, any_full or full
         rate = v - m.p.amplifier.resistance * i
@@ -222,10 +223,19 @@ def react(t, q, dq, m):
         pull = m.d.pull * squared(max(flux, 0.0))
         pull = pull if coil % 2 == 0 else -pull
         f1, f2 = (f1 + pull, f2) if coil < 2 else (f1, f2 + pull)
-    dq[SENSE] = sensing.rate(y1, q[SENSE], m.p.sensing)
-    dq[SENSE + 1] = sensing.rate(y2, q[SENSE + 1], m.p.sensing)
+    for k in range(len(u)):
+        dq[SENSE + k] = sensing.rate(seen[k], q[SENSE + k], m.p.sensing)
     dq[TAKEN] = power
     dq[AT_CURRENT], dq[AT_VOLTAGE] = 1.0 if any_cut else 0.0, 1.0 if any_full else 0.0
+    return f1, f2
+
+
+@kernel
+def react(t, q, dq, m):
+    """`Load` of the magnets (N); sets dq of what is inside; t (s) into what is being integrated."""
+    t += m.s.done
+    u, seen = displacement(m.s.since + t, q, m)
+    f1, f2 = drive(m.time + t, u, seen, q, dq, m)
     fx, fy = m.d.cosine * f1 - m.d.sine * f2, m.d.sine * f1 + m.d.cosine * f2
     dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
     if m.p.inject.force == 0.0 or m.time + m.s.done < m.p.inject.begin - ROUNDING:
@@ -243,21 +253,30 @@ def rhs(t, q, dq, m):
 
 
 @kernel
-def observe(t, q, m):
-    """Largest current and smallest gap, after each accepted micro-step."""
-    u1, u2, _, _ = displacement(m.s.since + m.s.done + t, q, m)
-    for coil in range(COILS):
-        gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
+def watch(t, u, q, m):
+    """Note the largest current and the smallest gap; u: displacements along each axis (m)."""
+    for coil in range(2 * len(u)):
+        gap = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d)
         i = magnet.current_of(q[FLUX + coil], gap, m.p.magnet, m.d)
         if m.d.eddy > 0.0:
             volt = amplifier.link_voltage(m.time + m.s.done + t, m.s.link_off, m.p.supply)
             _, i, _, _, _ = coil_state(coil, q, gap, volt, m)
         m.o.peak_current = max(m.o.peak_current, i)
-    m.o.least_gap = min(m.o.least_gap, m.p.magnet.gap - math.sqrt(u1 * u1 + u2 * u2))
+    square = 0.0
+    for one in u:
+        square += one * one
+    m.o.least_gap = min(m.o.least_gap, m.p.magnet.gap - math.sqrt(square))
 
 
 @kernel
-def _ready(m, since):
+def observe(t, q, m):
+    """Largest current and smallest gap, after each accepted micro-step."""
+    u, _ = displacement(m.s.since + m.s.done + t, q, m)
+    watch(t, u, q, m)
+
+
+@kernel
+def ready(m, since):
     """Note the clock; since (s): from the inputs to the stretch that begins at m.time."""
     m.s.since, m.s.done = since, 0.0
 
@@ -266,7 +285,7 @@ def _ready(m, since):
 def sample(time, q, m):
     """Put the sensors' readings (m) at `time` (s) into the outputs."""
     inject = m.p.inject
-    for k in range(2):
+    for k in range(len(m.o.axis)):
         if m.s.sensor[k].fault == NOTHING:
             noise = sensing.deviation(m.s.ticks, k, m.p.sensing)
             m.o.axis[k].sensed = m.p.sensing.gain * q[SENSE + k] + noise
@@ -281,7 +300,7 @@ def sample(time, q, m):
 @kernel
 def take_commands(time, m):
     """Let the set points act from `time` (s) on that were last given."""
-    for k in range(2):
+    for k in range(len(m.o.axis)):
         command = m.u.axis[k]
         m.s.axis[k].set = command.set if m.p.command == 0 else command.force_set / m.d.current_factor
         m.s.axis[k].enable = command.enable
@@ -291,11 +310,17 @@ def take_commands(time, m):
 
 @kernel
 def report(q, m):
-    """Currents, voltages, forces, and without a sample time what the sensors tell now."""
+    """Outputs wanted once per macro step, as of `report_axes`."""
+    u, _ = displacement(m.s.since + 2.0 * m.half, q, m)
+    report_axes(u, q, m)
+
+
+@kernel
+def report_axes(u, q, m):
+    """Currents, voltages, forces, and without a sample time what the sensors tell now; u: as in `watch`."""
     volt = amplifier.link_voltage(m.time + 2.0 * m.half, m.s.link_off, m.p.supply)
-    u1, u2, _, _ = displacement(m.s.since + 2.0 * m.half, q, m)
-    for coil in range(COILS):
-        gap, o = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d), m.o.axis[coil // 2]
+    for coil in range(2 * len(u)):
+        gap, o = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d), m.o.axis[coil // 2]
         v, i, _, _, _ = coil_state(coil, q, gap, volt, m)
         if coil % 2 == 0:
             o.voltage_plus, o.current_plus = v, i
@@ -315,16 +340,23 @@ def report(q, m):
 def derive(words):
     """Error weights of the state, and the constants of the magnets; sees that events can be."""
     m = words.view(MEMORY)[0]
-    magnet.lay_out_circuit(m.d, m.p.magnet, m.p.amplifier.bias)
+    m.d.cosine, m.d.sine = math.cos(m.p.magnet.angle), math.sin(m.p.magnet.angle)
     seat.set_weights(m.weight)
+    return derive_axes(math.cos(m.p.magnet.pole_angle), m)
+
+
+@kernel
+def derive_axes(pole, m):
+    """`derive` of what is inside; pole: cosine of the poles' angle."""
+    magnet.lay_out_circuit(m.d, m.p.magnet, m.p.amplifier.bias, pole)
     m.n = EDDY_LOSS + 1 if m.d.eddy > 0.0 else SIZE
-    for coil in range(COILS):
+    for coil in range(len(m.s.coil)):
         m.weight[FLUX + coil] = 1.0 / (CURRENT_SCALE * m.d.inductance)
         m.weight[RESET + coil] = m.p.amplifier.reset / CURRENT_SCALE
         for k in range(EDDIES if m.d.eddy > 0.0 else 0):
             m.weight[EDDY + EDDIES * coil + k] = m.weight[FLUX + coil]
     m.weight[SENSE] = m.weight[SENSE + 1] = 1.0 / SIGNAL_SCALE
-    return amplifier.event_problem(m.p.event, m.message_numbers)
+    return amplifier.event_problem(m.p.event, len(m.s.sensor), m.message_numbers)
 
 
 @kernel
@@ -332,28 +364,34 @@ def start(words):
     """Begin with the currents that hold the static load."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
-    m.o.current_factor, m.o.displacement_factor = m.d.current_factor, m.d.displacement_factor
-    m.o.period, m.o.least_gap = m.p.sample_time, m.p.magnet.gap
     fx, fy = sensing.static_load(m.u.journal)
-    for k in range(2):
-        force = m.d.cosine * fx + m.d.sine * fy if k == 0 else m.d.cosine * fy - m.d.sine * fx
-        m.o.axis[k].hold = magnet.holding_current(force, m.p.magnet, m.d, m.p.amplifier)
-        m.s.axis[k].set, m.s.axis[k].enable = m.o.axis[k].hold, 1.0
-    if m.p.sample_time > 0.0:
-        m.s.ticks = math.ceil((m.time - ROUNDING) / m.p.sample_time)
-    u1, u2, y1, y2 = displacement(0.0, m.q, m)
-    for coil in range(COILS):
-        target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].set, m.p.amplifier)
-        gap = magnet.gap_of(coil, u1, u2, m.p.magnet, m.d)
-        m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
-        for k in range(EDDIES if m.d.eddy > 0.0 else 0):
-            m.q[EDDY + EDDIES * coil + k] = m.q[FLUX + coil]
-    m.q[SENSE], m.q[SENSE + 1] = y1, y2
-    sample(m.time, m.q, m)
-    amplifier.let_happen(m.p.event, m.time - ROUNDING, m.s)
+    u, seen = displacement(0.0, m.q, m)
+    begin_axes((m.d.cosine * fx + m.d.sine * fy, m.d.cosine * fy - m.d.sine * fx), u, seen, m)
     seat.begin(seat.PLANAR, react, report, m)
     m.o.journal.fx, m.o.journal.fy = fx, fy
     m.o.housing.fx, m.o.housing.fy = -fx, -fy
+
+
+@kernel
+def begin_axes(forces, u, seen, m):
+    """Let the axes hold static forces (N); u, seen: as in `drive`."""
+    m.o.current_factor, m.o.displacement_factor = m.d.current_factor, m.d.displacement_factor
+    m.o.period, m.o.least_gap = m.p.sample_time, m.p.magnet.gap
+    for k in range(len(forces)):
+        m.o.axis[k].hold = magnet.holding_current(forces[k], m.p.magnet, m.d, m.p.amplifier)
+        m.s.axis[k].set, m.s.axis[k].enable = m.o.axis[k].hold, 1.0
+    if m.p.sample_time > 0.0:
+        m.s.ticks = math.ceil((m.time - ROUNDING) / m.p.sample_time)
+    for coil in range(2 * len(u)):
+        target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].set, m.p.amplifier)
+        gap = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d)
+        m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
+        for k in range(EDDIES if m.d.eddy > 0.0 else 0):
+            m.q[EDDY + EDDIES * coil + k] = m.q[FLUX + coil]
+    for k in range(len(u)):
+        m.q[SENSE + k] = seen[k]
+    sample(m.time, m.q, m)
+    amplifier.let_happen(m.p.event, m.time - ROUNDING, m.s)
 
 
 @kernel
@@ -383,16 +421,22 @@ def _act(time, left, m):
 
 @kernel
 def integrate(m, work, step):
-    """Advance m.q by `step` (s), from tick to tick and event to event. As `seat.integrate`."""
+    """Advance m.q by `step` (s). As `seat.integrate`."""
+    return from_tick_to_tick(seat.PLANAR, rhs, observe, m, work, step)
+
+
+@kernel
+def from_tick_to_tick(carried, rhs, observe, m, work, step):
+    """`seat.integrate` in spans, from tick to tick and event to event."""
     h, status, evaluations = m.h, OK, 0
     if m.p.sample_time == 0.0:
         take_commands(m.time, m)
     while status == OK and step - m.s.done > ROUNDING:
         span = _act(m.time + m.s.done, step - m.s.done, m)
         m.h = h
-        h, status, more = seat.integrate(seat.PLANAR, rhs, observe, m, work, span)
+        h, status, more = seat.integrate(carried, rhs, observe, m, work, span)
         evaluations += more
-        for coil in range(COILS):
+        for coil in range(len(m.s.coil)):
             m.q[FLUX + coil] = max(m.q[FLUX + coil], 0.0)
         m.s.done += span
     m.s.done = 0.0
@@ -410,17 +454,23 @@ def instant(t, q, dq, words):
 
 
 @kernel
-def advance(words, work, time, step):
-    """One macro step of `step` (s) from `time` (s); returns a status."""
-    m = words.view(MEMORY)[0]
-    total = sensing.sum_of_inputs(m.u)
+def refused(total, step, m):
+    """Status of a macro step of `step` (s) that cannot be taken, else OK; total: of inputs of the seat."""
     for axis in m.u.axis:
         total += axis.set + axis.force_set + axis.enable
     if not math.isfinite(total):
         return BAD_INPUT
-    if m.p.sample_time > 0.0 and step > m.p.sample_time + ROUNDING:
-        return TOO_LONG_STEP
-    return seat.advance(seat.PLANAR, _ready, react, integrate, report, words, m, work, time, step)
+    return TOO_LONG_STEP if m.p.sample_time > 0.0 and step > m.p.sample_time + ROUNDING else OK
+
+
+@kernel
+def advance(words, work, time, step):
+    """One macro step of `step` (s) from `time` (s); returns a status."""
+    m = words.view(MEMORY)[0]
+    status = refused(sensing.sum_of_inputs(m.u), step, m)
+    if status != OK:
+        return status
+    return seat.advance(seat.PLANAR, ready, react, integrate, report, words, m, work, time, step)
 
 
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")

@@ -42,7 +42,7 @@ NOTHING, COIL_OFF, COIL_ON, LINK_OFF, LINK_ON = range(5)
 COIL_SHORT, COIL_STUCK, SENSOR_LOST, SENSOR_STUCK, SENSOR_ON = range(5, 10)
 LINK, COIL, SENSOR = range(3)
 OF = (-1, COIL, COIL, LINK, LINK, COIL, COIL, SENSOR, SENSOR, SENSOR)  # by kind: what it happens to
-PROBLEMS = ("event[{0:g}].coil = {1:g} is of a sensor; sensors are 1 and 2, as the axes, and 0: both",)
+PROBLEMS = ("event[{0:g}].coil = {1:g} is of a sensor; an axis has one: 1 to {2:g}, and 0: all",)
 
 
 @dataclass(frozen=True)
@@ -128,20 +128,20 @@ def let_happen(events, until, s):
     """
     kind, time = _last(events, until, LINK, 0)
     s.link_off = time if kind == LINK_OFF else ALWAYS
-    for k in range(COILS):
+    for k in range(len(s.coil)):
         kind, _ = _last(events, until, COIL, k + 1)
         s.coil[k].fault = NOTHING if kind == COIL_ON else kind
-    for k in range(AXES):
+    for k in range(len(s.sensor)):
         kind, _ = _last(events, until, SENSOR, k + 1)
         s.sensor[k].fault = NOTHING if kind == SENSOR_ON else kind
 
 
 @kernel
-def event_problem(events, numbers):
+def event_problem(events, sensors, numbers):
     """1 where an event is of a sensor that is not there, else 0; numbers: those of the text."""
     for k, event in enumerate(events):
-        if OF[event.kind] == SENSOR and event.coil > AXES:
-            numbers[0], numbers[1] = k + 1, event.coil
+        if OF[event.kind] == SENSOR and event.coil > sensors:
+            numbers[0], numbers[1], numbers[2] = k + 1, event.coil, sensors
             return 1
     return 0
 

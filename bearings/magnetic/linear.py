@@ -80,7 +80,8 @@ class LinearActuator:
         """Axis 1 or 2 with the parameters of the model, and what it gives once initialised."""
         p, a = from_values(Magnet, value, "magnet."), from_values(Amplifier, value, "amplifier.")
         d, hold = SimpleNamespace(), value(f"axis[{axis}].hold")
-        _plain(magnet.lay_out_circuit)(d, p, a.bias)
+        _plain(magnet.lay_out_circuit)(d, p, a.bias, math.cos(p.pole_angle))
+        d.cosine, d.sine = math.cos(p.angle), math.sin(p.angle)
         fx, fy = value("journal.fx"), value("journal.fy")
         load = d.cosine * fx + d.sine * fy if axis == 1 else d.cosine * fy - d.sine * fx
         strongest = d.pull * _plain(magnet.flux_of)(a.current_limit, p.gap, p, d) ** 2  # the other coil off
@@ -256,7 +257,7 @@ def _coils(p: Magnet, d: SimpleNamespace, a: Amplifier, axis: int, hold: float) 
         if flux == 0.0:
             continue
         per_flux, per_gap = magnet.current_slopes(flux, p.gap, p, d)
-        ahead, behind = (_plain(magnet.gap_of)(coil, u, u, p, d) for u in (0.125 * p.gap, -0.125 * p.gap))
+        ahead, behind = (_plain(magnet.gap_of)(coil, u, p, d) for u in (0.125 * p.gap, -0.125 * p.gap))
         yield Coil(
             sign,
             current,

@@ -50,16 +50,12 @@ SMALLEST_GAP = 0.05  # of the centred journal's; nearer, the journal would have 
 
 
 @dataclass(frozen=True)
-class Magnet:
-    """Four equal magnets: the first axis lies at `angle`, the second a quarter turn further."""
+class Core:
+    """Equal magnets, and their iron."""
 
     gap: float = real(0.6e-3, "m", "air gap of the centred journal", above=0.0)
     area: float = real(1e-4, "m2", "cross-section of a pole", above=0.0)
     turns: float = real(200.0, "1", "turns of a magnet's coil", above=0.0)
-    pole_angle: float = real(
-        math.pi / 8, "rad", "half the angle between a magnet's poles", minimum=0.0, maximum=1.5
-    )
-    angle: float = real(math.pi / 4, "rad", "of the first axis, from the horizontal")
     flux_limit: float = real(1.2, "T", "flux density at which the iron saturates", above=0.0)
     iron_path: float = real(
         0.1, "m", "of the iron, which once it is saturated is as permeable as air", minimum=0.0
@@ -71,6 +67,16 @@ class Magnet:
         minimum=0.0,
         shown="rad/s",
     )
+
+
+@dataclass(frozen=True)
+class Magnet(Core):
+    """Four equal magnets: the first axis lies at `angle`, the second a quarter turn further."""
+
+    pole_angle: float = real(
+        math.pi / 8, "rad", "half the angle between a magnet's poles", minimum=0.0, maximum=1.5
+    )
+    angle: float = real(math.pi / 4, "rad", "of the first axis, from the horizontal")
 
 
 @dataclass(frozen=True)
@@ -104,14 +110,13 @@ class Circuit(Factors):
 
 
 @kernel
-def lay_out_circuit(d, p, bias):
-    """Set the constants d (`Circuit`) of the magnets p (`Magnet`) with a bias current (A)."""
+def lay_out_circuit(d, p, bias, pole):
+    """Set the constants d (`Circuit`) of magnets p (`Core`) with a bias current (A); pole: cosine."""
     d.factor = 0.25 * MU0 * p.turns * p.turns * p.area
     d.inductance = 2.0 * d.factor / p.gap
     d.eddy = 1.0 / (d.inductance * math.sqrt(p.eddy_bandwidth)) if p.eddy_bandwidth > 0.0 else 0.0
-    d.pole = math.cos(p.pole_angle)
+    d.pole = pole
     d.pull = d.pole / (4.0 * d.factor)
-    d.cosine, d.sine = math.cos(p.angle), math.sin(p.angle)
     d.current_factor = 4.0 * d.factor * bias / squared(p.gap) * d.pole
     d.displacement_factor = -4.0 * d.factor * squared(bias) / (p.gap * p.gap * p.gap) * squared(d.pole)
 
@@ -146,9 +151,9 @@ def flux_of(current, gap, p, d):
 
 
 @kernel
-def gap_of(coil, u1, u2, p, d):
-    """Mean air gap (m) of a coil (0 to 3: first axis +, -, second axis +, -), the journal at u1, u2 (m)."""
-    u = d.pole * (u1 if coil < 2 else u2)
+def gap_of(coil, displacement, p, d):
+    """Mean air gap (m) of a coil (0 to 3: first axis +, -, second axis +, -), its axis displaced (m)."""
+    u = d.pole * displacement
     return max(p.gap - u if coil % 2 == 0 else p.gap + u, SMALLEST_GAP * p.gap)
 
 
