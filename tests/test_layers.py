@@ -43,7 +43,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 BUDGETS = {  # lines of a package at most, with room for one feature. A commit that raises one says why
     "rotor": 6900,
     "bearings": 21250,
-    "modelkit": 4180,
+    "modelkit": 4340,
     "fmus": 3450,
     "master": 21080,
     "studies": 13500,
@@ -63,7 +63,6 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
             "rating",
             "supports",
             "magnetic",
-            "excitation",
             "angular",
             "rolling",
             "heat",
@@ -88,7 +87,8 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
         ),
     ),
     "modelkit": (
-        *("instance", "body", "needs", "model", "ports", "integrators", "numerics", "gravity", "kernel"),
+        *("instance", "body", "needs", "model", "ports", "integrators", "numerics"),
+        *("excitation", "gravity", "kernel"),
         *("variables", "sheets", "archives", "reader", "units", "errors", "status", "messages"),
     ),
     "validation": (
@@ -115,7 +115,6 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     },
     "touchdown.bearings.angular": {"touchdown.studies.machine", "touchdown.master.results.clamped_pairs"},
     "touchdown.bearings.magnetic": {"touchdown.studies.loop"},
-    "touchdown.bearings.excitation": {"touchdown.studies.loop"},
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,
     "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.reports.chapters.heat"},

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 
+from ...modelkit.excitation import Lines
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model
 from ...modelkit.numerics import squared
@@ -23,7 +24,6 @@ from ...modelkit.ports import Interface, Load, PlanarMountReaction, PlanarSeatRe
 from ...modelkit.status import BAD_INPUT, OK, TOO_LONG_STEP
 from ...modelkit.variables import Choices, choice, group, groups, integer, real
 from .. import seat
-from ..excitation import Lines
 from . import amplifier, law, magnet, sensing
 from .amplifier import ALWAYS, AXES, COIL_OFF, COILS, NOTHING, Amplifier, AmplifierEvent, PartState, Supply
 from .injection import Injection, injected

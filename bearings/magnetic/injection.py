@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...modelkit.excitation import Lines, sum_of_lines
 from ...modelkit.kernel import kernel
 from ...modelkit.variables import Choices, choice, group, real
-from ..excitation import Lines, sum_of_lines
 from .law import ROUNDING
 
 AXES = Choices("InjectedAxes", ("both", "first", "second"))

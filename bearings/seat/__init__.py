@@ -29,12 +29,16 @@ from __future__ import annotations
 # ruff: noqa: F401 (the names that bearings use)
 from .copies import (
     HE,
+    HPX,
+    HPY,
     HVX,
     HVY,
     HX,
     HY,
     INSIDE,
     JE,
+    JPX,
+    JPY,
     JVX,
     JVY,
     JW,

@@ -17,13 +17,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...bearings.excitation import Lines, next_line
 from ...master.common.text import percent
 from ...master.coupling.connections import AXIS, COMMAND, SET_POINTS
 from ...master.coupling.observer import Observer, RunState
 from ...master.coupling.simulation import opened, simulate
 from ...master.coupling.system import System
 from ...master.scene.scene import Scene
+from ...modelkit.excitation import Lines, next_line
 from ...modelkit.kernel import interpret
 from .linear_loops import Sampled
 from .transfer import Answers, answers

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from touchdown.bearings.excitation import Lines, next_line, sum_of_lines
 from touchdown.bearings.magnetic import amb_actuator
+from touchdown.modelkit.excitation import Lines, next_line, sum_of_lines
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.kernel import interpret
 
