@@ -173,6 +173,14 @@ MOUNT_HEATS = {
 INVALID = "invalid_figures"  # paths of a summary's figures
 CONTACT_TEMPERATURE = "contact_temperature"
 STRESSES = "bending", "shear"
+LINK_ENERGIES = {
+    "mains": "energy that the mains gave",
+    "generated": "energy that the rotor's motor gave",
+    "taken": "energy that the actuators took",
+    "standby": "energy that the electronics took",
+    "burnt": "energy that the brake chopper burnt",
+    "stored": "energy of the capacitor at the end",
+}
 PLANES = {"x": "horizontal", "y": "vertical"}
 
 
@@ -339,6 +347,13 @@ TABLE: tuple[Quantity, ...] = (
     Quantity("time_at_voltage_limit", "time at the voltage limit", "s", Group.LEVITATION, Owner.RUN),
     Quantity("time_at_controller_limit", "time at the controller's own limit", "s", Group.LEVITATION,
              Owner.RUN),
+    _text("hold_up", "without mains", Group.LEVITATION, Owner.COMPONENT),
+    _event("hold_up_time", "hold-up, from the mains' failure to the first contact", Group.LEVITATION,
+           Owner.COMPONENT),
+    _event("lock_out_time", "DC link locks out, after the mains' failure", Group.LEVITATION,
+           Owner.COMPONENT),
+    *(Quantity(f"link_{key}", words, "J", Group.LEVITATION, Owner.COMPONENT, Worse.NEITHER, detail=True)
+      for key, words in LINK_ENERGIES.items()),
     # requirements
     _text("requirements_met", "requirements met", Group.REQUIREMENTS),
     Quantity("margin", "margin to the requirement", "1", Group.REQUIREMENTS, Owner.REQUIREMENT,
@@ -532,3 +547,9 @@ CONTACTS = "first_contact_time", "face_landing_time"  # in the bore, on a face
 def was_touched(seat: Mapping[str, Any]) -> bool:
     """Whether a seat's bearing was, in its bore or on a face."""
     return any(seat.get(key) is not None for key in CONTACTS)
+
+
+def first_touch(summary: Mapping[str, Any]) -> float | None:
+    """The first contact anywhere, of a journal or a shoulder (s from the zero); None: nothing touched."""
+    times = (values_of(summary, key).values() for key in CONTACTS)
+    return min((time for found in times for time in found if time is not None), default=None)

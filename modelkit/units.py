@@ -29,6 +29,7 @@ UNIT_SCALES: dict[str, tuple[float, str]] = {
     "GPa": (1e9, "Pa"), "MPa": (1e6, "Pa"), "kPa": (1e3, "Pa"),
     "mm2": (1e-6, "m2"), "cm2": (1e-4, "m2"),
     "mA": (1e-3, "A"), "mV": (1e-3, "V"), "kV": (1e3, "V"), "mOhm": (1e-3, "Ohm"),
+    "mF": (1e-3, "F"), "uF": (1e-6, "F"), "kW": (1e3, "W"),
     "A/mm": (1e3, "A/m"), "A/um": (1e6, "A/m"),
     "%": (1e-2, "1"),
 }  # fmt: skip

@@ -13,9 +13,9 @@ import numpy as np
 from ..master.common.errors import TouchdownError
 from ..master.coupling.connections import Attachment
 from ..master.coupling.loop.span import zero_of
-from ..master.quantities import FIRST_IMPACTS, INVALID, SPREAD, Item, Owner, named, owned
+from ..master.quantities import FIRST_IMPACTS, INVALID, SPREAD, Item, Owner, first_touch, named, owned
 from ..master.results.final_state import Finished
-from ..master.results.headline import first_touch, since_origin
+from ..master.results.headline import since_origin
 from ..master.results.ratings import Origin
 from ..master.results.result import Result
 from ..master.results.summary import seat_name, touchdown_seats

@@ -42,10 +42,10 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 }
 BUDGETS = {  # lines of a package at most, with room for one feature. A commit that raises one says why
     "rotor": 6900,
-    "bearings": 21250,
+    "bearings": 21480,
     "modelkit": 4340,
     "fmus": 3450,
-    "master": 21080,
+    "master": 21160,
     "studies": 13500,
     "reports": 6440,
     "command": 3610,

@@ -68,7 +68,7 @@ class _ActuatorCommand(law.Command):
 
 
 @dataclass(frozen=True)
-class Inputs(sensing.SensedInputs):
+class Inputs(amplifier.Feed, sensing.SensedInputs):
     """Motion of journal, stator and sensor, and the controller's commands."""
 
     axis: tuple = groups(_ActuatorCommand, 2)
@@ -206,7 +206,7 @@ def drive(time, u, seen, q, dq, m):
 
     u, seen: displacements of the journal and of the sensed place along each axis (m).
     """
-    volt = amplifier.link_voltage(time, m.s.link_off, m.p.supply)
+    volt = amplifier.link_voltage(time, m)
     f1, f2, power, any_cut, any_full = 0.0, 0.0, 0.0, False, False
     if m.d.eddy > 0.0:
         dq[EDDY_LOSS] = 0.0
@@ -259,7 +259,7 @@ def watch(t, u, q, m):
         gap = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d)
         i = magnet.current_of(q[FLUX + coil], gap, m.p.magnet, m.d)
         if m.d.eddy > 0.0:
-            volt = amplifier.link_voltage(m.time + m.s.done + t, m.s.link_off, m.p.supply)
+            volt = amplifier.link_voltage(m.time + m.s.done + t, m)
             _, i, _, _, _ = coil_state(coil, q, gap, volt, m)
         m.o.peak_current = max(m.o.peak_current, i)
     square = 0.0
@@ -318,7 +318,7 @@ def report(q, m):
 @kernel
 def report_axes(u, q, m):
     """Currents, voltages, forces, and without a sample time what the sensors tell now; u: as in `watch`."""
-    volt = amplifier.link_voltage(m.time + 2.0 * m.half, m.s.link_off, m.p.supply)
+    volt = amplifier.link_voltage(m.time + 2.0 * m.half, m)
     for coil in range(2 * len(u)):
         gap, o = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d), m.o.axis[coil // 2]
         v, i, _, _, _ = coil_state(coil, q, gap, volt, m)
@@ -356,7 +356,7 @@ def derive_axes(pole, m):
         for k in range(EDDIES if m.d.eddy > 0.0 else 0):
             m.weight[EDDY + EDDIES * coil + k] = m.weight[FLUX + coil]
     m.weight[SENSE] = m.weight[SENSE + 1] = 1.0 / SIGNAL_SCALE
-    return amplifier.event_problem(m.p.event, len(m.s.sensor), m.message_numbers)
+    return amplifier.event_problem(m)
 
 
 @kernel
@@ -458,7 +458,7 @@ def refused(total, step, m):
     """Status of a macro step of `step` (s) that cannot be taken, else OK; total: of inputs of the seat."""
     for axis in m.u.axis:
         total += axis.set + axis.force_set + axis.enable
-    if not math.isfinite(total):
+    if not math.isfinite(total + m.u.link_voltage):
         return BAD_INPUT
     return TOO_LONG_STEP if m.p.sample_time > 0.0 and step > m.p.sample_time + ROUNDING else OK
 

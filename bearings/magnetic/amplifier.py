@@ -42,7 +42,10 @@ NOTHING, COIL_OFF, COIL_ON, LINK_OFF, LINK_ON = range(5)
 COIL_SHORT, COIL_STUCK, SENSOR_LOST, SENSOR_STUCK, SENSOR_ON = range(5, 10)
 LINK, COIL, SENSOR = range(3)
 OF = (-1, COIL, COIL, LINK, LINK, COIL, COIL, SENSOR, SENSOR, SENSOR)  # by kind: what it happens to
-PROBLEMS = ("event[{0:g}].coil = {1:g} is of a sensor; an axis has one: 1 to {2:g}, and 0: all",)
+PROBLEMS = (
+    "event[{0:g}].coil = {1:g} is of a sensor; an axis has one: 1 to {2:g}, and 0: all",
+    "event[{0:g}] is of its own link, and another one feeds it; make it an event of that one (off, on)",
+)
 
 
 @dataclass(frozen=True)
@@ -62,10 +65,17 @@ class Amplifier:
 
 @dataclass(frozen=True)
 class Supply:
-    """The DC link."""
+    """The DC link, where no other one feeds the actuator."""
 
     voltage: float = real(100.0, "V", "of the DC link", minimum=0.0)
     decay: float = real(0.01, "s", "time constant with which it falls once it is cut off", above=0.0)
+
+
+@dataclass(frozen=True)
+class Feed:
+    """The DC link outside."""
+
+    link_voltage: float = real(-1.0, "V", "of the DC link that feeds it; below zero: `supply` is its own")
 
 
 @dataclass(frozen=True)
@@ -92,8 +102,11 @@ class PartState:
 
 
 @kernel
-def link_voltage(time, off, p):
-    """Voltage (V) of the link p (`Supply`) at a time (s); off (s): when it was cut off, `ALWAYS`: not."""
+def link_voltage(time, m):
+    """Voltage (V) of the link at a time (s); m: an actuator's memory."""
+    off, p = m.s.link_off, m.p.supply
+    if m.u.link_voltage >= 0.0:
+        return m.u.link_voltage
     if off < 0.0:
         return p.voltage
     return p.voltage * math.exp(-(time - off) / p.decay)
@@ -137,12 +150,16 @@ def let_happen(events, until, s):
 
 
 @kernel
-def event_problem(events, sensors, numbers):
-    """1 where an event is of a sensor that is not there, else 0; numbers: those of the text."""
-    for k, event in enumerate(events):
+def event_problem(m):
+    """The number in `PROBLEMS` of the first event that cannot be, or 0; m: an actuator's memory."""
+    sensors, numbers = len(m.s.sensor), m.message_numbers
+    for k, event in enumerate(m.p.event):
         if OF[event.kind] == SENSOR and event.coil > sensors:
             numbers[0], numbers[1], numbers[2] = k + 1, event.coil, sensors
             return 1
+        if OF[event.kind] == LINK and m.u.link_voltage >= 0.0:
+            numbers[0] = k + 1
+            return 2
     return 0
 
 

@@ -90,7 +90,7 @@ class LinearActuator:
         elif abs(load) > strongest * (1.0 + ROUNDING):
             hold = 0.0
         coils, sensor = tuple(_coils(p, d, a, axis, hold)), from_values(Sensor, value, "sensing.")
-        return cls(p, a, sensor, d, coils, hold, load, strongest, value("supply.voltage"))
+        return cls(p, a, sensor, d, coils, hold, load, strongest, value("link"))
 
     @property
     def holds(self) -> bool:

@@ -60,7 +60,7 @@ REPORTS = (  # groups of what bearings and bodies say of themselves, for figures
     "braking",
 )
 LOOP = (  # what actuators and controllers say of themselves beside those
-    *("link", "link_energy", "peak_current", "least_gap"),
+    *("link", "link_energy", "peak_current", "least_gap", "capacitor", "locked"),
     *("commanded_time", "captured_time", "samples", "missed"),
 )
 STROKE = ("stroke", "stop_force")  # what a mount says of itself, alone or for each seat of a foundation

@@ -44,6 +44,8 @@ STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
 GRAVITY = "gravity"
 JACOBI = "jacobi"  # sequence in which all step at once, and give at the end of their own steps
 SAMPLE_TIME, TICK = "sample_time", "tick"  # of an actuator: s, 0: it does not sample; sample to come
+# Of an actuator: V, from a DC link; J, that it took of it; settings of one that no link feeds
+LINK_VOLTAGE, LINK_ENERGY, SUPPLY = "link_voltage", "link_energy", "supply."
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
@@ -103,6 +105,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         *declared_steps(scene, components),
         *_early(scene, attachments, connections),
         *clocks,
+        *_fed_by_links(scene, connections),
         *idle_settings(scene, components, attachments, settings),
     ]
     remarks += plausibility_warnings(seats)
@@ -200,6 +203,22 @@ def _clock(scene: Scene, controller: Component, actuator: str, period: float, ti
             f"{name} takes each of its steps for a sample; where macro steps are divided (run.impact_step, "
             f"run.whirl_halvings) it takes more than {actuator} has. Set {name}.sampled = {period:g} s"
         )
+
+
+def _fed_by_links(scene: Scene, connections: Sequence[Connection]) -> Iterator[str]:
+    """Lines on own supplies of actuators that a DC link feeds, and on what the link is not told."""
+    told = {c.source for c in connections if c.output == LINK_ENERGY}
+    for c in connections:
+        if c.input != LINK_VOLTAGE:
+            continue
+        if own := [f"{c.target}.{key}" for key in scene.components[c.target].set if key.startswith(SUPPLY)]:
+            do, them = ("do", "them") if len(own) > 1 else ("does", "it")
+            yield f"{', '.join(own)} {do} nothing, as {c.source} feeds {c.target}; leave {them} out"
+        if c.target not in told:
+            yield (
+                f"{c.source} is not told what {c.target} takes, and does not run empty by it; connect "
+                f"{c.target}.{LINK_ENERGY}"
+            )
 
 
 def _early(

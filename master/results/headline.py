@@ -8,7 +8,7 @@ from contextlib import suppress
 from ..common.errors import Ended, TouchdownError
 from ..common.text import UM, joined
 from ..coupling.loop.span import origin_of
-from ..quantities import CONTACTS, Owner, Summary, owned, values_of
+from ..quantities import Owner, Summary, first_touch, owned, values_of
 from ..scene.scene import Scene
 from .capture import Fate, by_words, captured_words, fate
 from .final_state import Finished
@@ -44,12 +44,6 @@ def since_origin(run: Finished, time: float) -> float:
     with suppress(TouchdownError):  # a component that failed tells nothing any more
         return time - origin_of(run.scene, run.system)
     return time
-
-
-def first_touch(summary: Summary) -> float | None:
-    """The first contact anywhere, of a journal or a shoulder (s from the zero); None: nothing touched."""
-    times = (values_of(summary, key).values() for key in CONTACTS)
-    return min((time for found in times for time in found if time is not None), default=None)
 
 
 def _decision(scene: Scene, summary: Summary) -> str:

@@ -21,6 +21,7 @@ from .clamped_pairs import pair_quantities
 from .final_state import Finished, ReadableSystem
 from .first_impact import latest, over_at, values_at
 from .heat import heat_quantities
+from .hold_up import add_hold_ups
 from .least_gaps import add_gaps
 from .mount_loads import mount_quantities
 from .ratings import rating_quantities
@@ -101,6 +102,7 @@ def summarise(scene: Scene, system: ReadableSystem, outcome: Outcome, recording:
         with suppress(NotRecordedError):
             enter(summary, _held(a, recording), Owner.SEAT, seat_name(a, held))
     enter(summary, coils(system))
+    add_hold_ups(summary, system, outcome.zero)
     for a in {a.body: a for a in reversed(seats)}.values():
         speed = system.value(a.motion("omega")) if a.motion("omega") in system else None
         enter(summary, {"speed_end": speed}, Owner.COMPONENT, a.body)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...master.common.text import joined
-from ...master.quantities import named
+from ...master.quantities import LINK_ENERGIES, named
 from ...master.results.capture import COILS, COMMANDED, GAP, LIMITED, captures
+from ...master.results.hold_up import links
 from ..charts import series
 from ..layout import Absent, Data
 from ..numbers import digits, heads, quantity
@@ -14,10 +15,12 @@ from ..series import Line
 from ..subject import COLOURS, Subject
 
 STATE, CAPTURED, MISSED = "state", "captured_time", "missed"  # of a controller
+CHARGE = "capacitor"  # V, of a DC link
 ENERGY = "link_energy"  # J, of an actuator
 AXES = (1, 2)  # of an actuator
 OF_AXES = (("current", "A", "Currents"), ("voltage", "V", "Voltages"))  # of coils: variable, unit, title
 COIL_SIDES = (("plus", "+"), ("minus", "−"))
+HOLD_UP = ("hold_up_time", "lock_out_time", *(f"link_{key}" for key in LINK_ENERGIES))
 VERDICTS = "capture", "capture_time", "capture_last_contact", "capture_peak_force"
 
 
@@ -26,8 +29,10 @@ def levitation(subject: Subject) -> Data:
     controllers, actuators = _telling(subject, COMMANDED), _telling(subject, COILS["largest_coil_current"])
     if not controllers and not actuators:
         raise Absent("no magnetic bearing of this scene has a controller of its own.")
-    states, components = list(_states(subject, controllers)), subject.run.system.components
+    states, components = list(_lines(subject, controllers, STATE)), subject.run.system.components
+    charges = list(_lines(subject, links(subject.run.system), CHARGE))
     chart = subject.chart("controllers", "States of the controllers", "state", states) if states else None
+    voltages = subject.chart("links", "Voltages of DC links", "voltage [V]", charges) if charges else None
     return {
         "fate_heads": heads(VERDICTS),
         "fates": _fates(subject),
@@ -38,6 +43,9 @@ def levitation(subject: Subject) -> Data:
         "coils": [one for name in actuators for one in _coils(subject, name)],
         "limit_heads": heads(COILS),
         "limits": [_limits(subject, name) for name in actuators],
+        "voltages": series(voltages) if voltages else None,
+        "hold_up_heads": heads(HOLD_UP),
+        "hold_ups": [_hold_up(subject, name) for name in links(subject.run.system)],
         "closed": joined([n for n in actuators if subject.run.system.value(f"{n}.{GAP}") <= 0.0]),
     }
 
@@ -60,10 +68,10 @@ def _fates(subject: Subject) -> list[list[str]]:
     ]
 
 
-def _states(subject: Subject, controllers: list[str]) -> Iterator[Line]:
-    for k, name in enumerate(controllers):
-        if f"{name}.{STATE}" in subject.run.recording:
-            yield Line(name, COLOURS[k % len(COLOURS)], subject.run.recording[f"{name}.{STATE}"])
+def _lines(subject: Subject, names: list[str], variable: str) -> Iterator[Line]:
+    for k, name in enumerate(names):
+        if f"{name}.{variable}" in subject.run.recording:
+            yield Line(name, COLOURS[k % len(COLOURS)], subject.run.recording[f"{name}.{variable}"])
 
 
 def _by_sensors(subject: Subject, controllers: list[str]) -> list[list[str]]:
@@ -100,6 +108,11 @@ def _coils(subject: Subject, name: str) -> Iterator[Data]:
             axis = f"{variable} [{unit}]"
             chart = subject.chart(f"{variable}-{name}", f"{title} of {name}", axis, lines)
             yield {"what": title, "of": name, "curves": series(chart)}
+
+
+def _hold_up(subject: Subject, name: str) -> list[str]:
+    values = subject.summary["components"][name]
+    return [name, values["hold_up"], *(quantity(values[key], named(key)[0].unit, 3) for key in HOLD_UP)]
 
 
 def _limits(subject: Subject, name: str) -> list[str]:

@@ -46,7 +46,7 @@ def linear(one: Instance, axis: int) -> LinearActuator:
     def value(name: str) -> float:
         if name.startswith("axis["):
             return float(one.record["o"]["axis"][axis - 1]["hold"])
-        place = one.record["o" if name.startswith("journal") else "p"]
+        place = one.record["o" if name.startswith(("journal", "link")) else "p"]
         for part in name.split("."):
             place = place[part]
         return float(place)
