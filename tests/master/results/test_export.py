@@ -97,7 +97,7 @@ def test_what_cannot_be_written(result: Result, tmp_path: Path, monkeypatch: pyt
 
 def test_every_instant_of_a_model_is_known_as_one() -> None:
     """So that none is shown on the simulation's clock."""
-    lengths = {"current_time", "voltage_time", "reach", "period"}
+    lengths = {"current_time", "voltage_time", "limited_time", "reach", "period"}
     for name in sorted(fmu_names()):
         for variable in flatten(recipe(name).model.outputs()):
             if variable.spec.unit == "s":
