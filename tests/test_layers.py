@@ -46,7 +46,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "modelkit": 4340,
     "fmus": 3450,
     "master": 21160,
-    "studies": 13500,
+    "studies": 14050,
     "reports": 6440,
     "command": 3610,
     "validation": 4400,

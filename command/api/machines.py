@@ -71,6 +71,7 @@ def new(
     inertia: Inertia | None = None,
     axial: str | None = None,
     inclination: Angle = 0.0,
+    controller: bool = False,
 ) -> Scene:
     """Create a folder with a first scene for your machine.
 
@@ -94,6 +95,7 @@ def new(
     axial: station of the touchdown bearing on whose faces a shoulder of the rotor lands (default: that of
         the first pair with a contact angle; without one the rotor keeps its place along the shaft)
     inclination: of the shaft's +z end over the horizontal, 90 deg for an upright machine (default: it lies)
+    controller: size magnets and amplifiers of the magnetic bearings, and tune their controller
 
     Returns the scene. What is to be known of the machine is warned of. Raises TouchdownError for what
     cannot be, and where files are there already.
@@ -118,6 +120,7 @@ def new(
         mount=None if mount is None else os.fspath(mount),
         axial=axial,
         inclination=to_si(inclination, "rad", "inclination"),
+        controller=controller,
         **numbers,
     )
     path = Path(os.fspath(folder))

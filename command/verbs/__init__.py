@@ -45,6 +45,7 @@ EXAMPLES = """
 touchdown new my-machine --rotor rotor_II --bearings 7014
 touchdown new my-machine --rotor rotor.toml --bearings 7014 --at A,B --amb A,B --speed "9000 rpm"
 touchdown new my-disk --mass "60 kg" --bearings 6014
+touchdown new my-levitated-rotor --rotor rotor_II --bearings 7014 --controller
 touchdown scenes
 touchdown scenes rotor1-9000
 touchdown scenes disk-caged-simplified --variables bearing

@@ -32,12 +32,12 @@ if TYPE_CHECKING:
     from ...master.scene.scene import Scene
 
 
-def show_new(_: Scene, folder: Path, notes: list[str]) -> int:
+def show_new(scene: Scene, folder: Path, notes: list[str]) -> int:
     """Print what is to be known of a new machine, and how to go on."""
     from ...master.scene.file import SCENE_FILE
 
     end = f"{folder / SCENE_FILE}: now run it with\n  touchdown run {folder}"
-    print("\n".join([*(f"note: {note}" for note in notes), end]))
+    print("\n".join([*filter(None, [scene.about.strip()]), *(f"note: {note}" for note in notes), end]))
     return 0
 
 

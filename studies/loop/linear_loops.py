@@ -342,7 +342,7 @@ class StateSpace:
 
 
 @dataclass(frozen=True)
-class _KnownLaws(_Laws):
+class KnownLaws(_Laws):
     """All channels, and how axes are mixed into them."""
 
     channels: tuple[LinearLaw, ...]  # in the order of the axes
@@ -460,7 +460,7 @@ def _period(scene: Scene, system: System, bearings: tuple[Controlled, ...]) -> f
     return periods.pop()
 
 
-def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> _KnownLaws:
+def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> KnownLaws:
     """Of the controllers, for the axes in the bearings' order."""
     axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
     channels, mixed = list[LinearLaw](), np.eye(len(axes))
@@ -487,7 +487,7 @@ def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> _K
         if value("structure"):
             mixed[row, row] = 0.5 if axis < 2 else -0.5
             mixed[row, axes.index(partner)] = 0.5
-    return _KnownLaws(tuple(channels), mixed, _delay(system, bearings))
+    return KnownLaws(tuple(channels), mixed, _delay(system, bearings))
 
 
 def _delay(system: System, bearings: Sequence[Controlled]) -> int:

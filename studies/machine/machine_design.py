@@ -19,6 +19,7 @@ from ...master.scene.plausible import MAX_BORE_SPEED, SPEED_RATIO_LIMIT
 from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.modes import RIGID_MODES, basis
 from ...rotor.static_deflection import at_rest
+from ..loop.design import Tuned
 from ..rotor.mode_error import ImpactSeat, ModeError, fewest_modes, impact_seat
 from ..rotor.rotor_report import pulling
 
@@ -26,6 +27,12 @@ GRAVITY = 9.81  # m/s2
 LEVITATION_FREQUENCY = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing
 LEVITATION_DAMPING = 0.3  # ratio
 FORCE_LIMIT_RATIO = 6.0  # limit of a magnetic bearing's force over the static load
+MU0 = 4e-7 * math.pi  # V s/(A m)
+FLUX = 1.2  # T, where the iron of magnets saturates
+POLE_ANGLE = math.pi / 8  # rad
+CURRENT = 6.0  # A, limit of an amplifier
+RESISTANCE = 0.5  # Ohm, of a coil
+SWUNG = 2.0 * math.pi * 1000.0  # rad/s, at which an amplifier's voltage swings its current by the bias
 MAX_SPEED_RATIO = 0.7  # speed over the first bending frequency
 HOUSING_SHARE = 0.15  # housing over what it carries
 MIN_HOUSING_MASS = 2.0  # kg
@@ -53,6 +60,52 @@ class MountFile:
 
 
 @dataclass(frozen=True)
+class Magnets:
+    """Of a magnetic bearing, and its amplifiers; SI.
+
+    At the current limit the iron carries `FLUX`, and an axis pulls `reserve` times the load.
+    """
+
+    load: float  # on the one that carries most
+    gap: float
+    speed: float
+    reserve: float
+
+    @property
+    def area(self) -> float:
+        """Of a pole."""
+        most = self.reserve * self.load
+        return rounded(1.05 * MU0 * most / (FLUX**2 * math.cos(POLE_ANGLE)))  # rounding takes 5 % at most
+
+    @property
+    def turns(self) -> int:
+        """Which make that flux in both gaps."""
+        return math.floor(2.0 * FLUX * self.gap / (MU0 * CURRENT))
+
+    @property
+    def voltage(self) -> float:
+        """Of the DC link, by `swung`."""
+        linked = 0.5 * FLUX * self.turns * self.area
+        return rounded(1.05 * (self.swung * linked + RESISTANCE * CURRENT))
+
+    @property
+    def swung(self) -> float:
+        """Angular frequency (rad/s) at which it swings a coil's current by the bias."""
+        return max(SWUNG, 2.0 * self.speed)
+
+
+@dataclass(frozen=True)
+class Levitation:
+    """Magnets and the controller of all magnetic bearings."""
+
+    magnets: Magnets
+    period: float  # s, from sample to sample
+    controller: Tuned | None  # None: still to be found
+    sensors: tuple[str, ...]  # of the rotor, one for each bearing; none: they look at the journal
+    about: tuple[str, ...] = ()  # how its loops are, a line each
+
+
+@dataclass(frozen=True)
 class Design:
     """A machine: all numbers in SI."""
 
@@ -73,6 +126,7 @@ class Design:
         ""  # of `touchdown`, the component with faces for a shoulder; "": it keeps its place along z
     )
     inclination: float = 0.0  # of the +z end over the horizontal
+    levitation: Levitation | None = None  # None: magnetic bearings are springs and dampers
 
     @property
     def carries(self) -> str:

@@ -24,6 +24,7 @@ from ...rotor.beams.shaft import Shaft, Station
 from ...rotor.file import parse_rotor, rotor_text, shipped_rotors
 from ..rotor.rotor_report import find_rotor
 from .bearings import find_bearing
+from .levitated import levitated
 from .machine_design import GRAVITY, Design, Support, first_bending, kept_modes, sensible_speed, supports
 from .mount_rules import chosen_mount
 from .scene_text import scene_text
@@ -109,6 +110,7 @@ class Wanted:
     )
     axial: str | None = None  # station of the touchdown bearing with faces; None: that of the first pair
     inclination: float = 0.0  # rad, of the +z end over the horizontal
+    controller: bool = False  # magnetic bearings have magnets and a controller
 
 
 @dataclass(frozen=True)
@@ -134,15 +136,19 @@ def machine(request: Wanted, title: str) -> _Machine:
             raise TouchdownError("--mass and --inertia are of a rigid rotor; leave them out, or --rotor")
         shaft = find_rotor(os.fspath(request.rotor))
         design, files = _flexible(request, shaft, places)
-        return _Machine(
-            files | {SCENE_FILE: scene_text(design)}, [*design.notes(), *_of_rotor(shaft, design)]
-        )
-    if request.at or request.amb:
-        raise TouchdownError("--at and --amb are stations of a rotor's file; give --rotor, too")
-    if request.mass is None:
-        raise TouchdownError('--rotor FILE.toml, or --mass such as "60 kg" of a rigid one, is missing')
-    design = _rigid(request, request.mass, title, places)
-    return _Machine(places.files | {SCENE_FILE: scene_text(design)}, design.notes())
+        notes = [*design.notes(), *_of_rotor(shaft, design)]
+    else:
+        if request.at or request.amb:
+            raise TouchdownError("--at and --amb are stations of a rotor's file; give --rotor, too")
+        if request.mass is None:
+            raise TouchdownError('--rotor FILE.toml, or --mass such as "60 kg" of a rigid one, is missing')
+        shaft, files = None, places.files
+        design = _rigid(request, request.mass, title, places)
+        notes = design.notes()
+    if request.controller:
+        design, more = levitated(design, files, shaft)
+        notes += more
+    return _Machine(files | {SCENE_FILE: scene_text(design)}, notes)
 
 
 def write(built: _Machine, folder: Path, force: bool) -> Path:

@@ -15,6 +15,7 @@ from ...bearings.catalogue.spinning import spun
 from ...master.common.text import MM, RPM, UM, percent
 from ...master.scene.plausible import MAX_BORE_SPEED
 from ...master.scene.requirements import KINDS, SIDES
+from .controlled_text import controlled_events, controlled_head, controlled_text, controller
 from .machine_design import (
     FORCE_LIMIT_RATIO,
     GRAVITY,
@@ -31,12 +32,20 @@ from .machine_design import (
 from .mount_rules import HERTZ, heading, holding, model, stiffness_text
 
 IN_SPACE = "angular_simplified"
+RUN = (
+    'duration = "2 s"  # at most',
+    'until = "settled"  # ends earlier once all seats have; "end" goes on for the whole duration',
+)
+RUN_ON = ('duration = "0.6 s"',)
 LOOSE_SEAT = RingSeat(play=10e-6)  # as a sliding fit may be
 
 
 def scene_text(design: Design) -> str:
     """The scene's file. Each value stands once: what all bearings share in [set], at the end."""
-    lines = [*_head(design), *_rotor(design), *_bearings(design), *_magnetic(design), *_touchdown(design)]
+    magnetic = (
+        _magnetic(design) if design.levitation is None else controlled_text(design, design.levitation)
+    )
+    lines = [*_head(design), *_rotor(design), *_bearings(design), *magnetic, *_touchdown(design)]
     return "\n".join([*lines, *_housings(design), *_requirement_examples(design)]) + "\n"
 
 
@@ -46,7 +55,11 @@ def _head(d: Design) -> Iterator[str]:
         "# Your machine, to be run with `touchdown run` and this folder.",
         "# Each value stands once. The rule that it is from stands beside it: put your own value there.",
         f"title = {_quoted(f'{d.title} dropped at {RPM * d.speed:g} rpm')}",
-        f'zero = "{amb}.shutdown_time"  # times count from here',
+        *(
+            controlled_head(d, d.levitation)
+            if d.levitation
+            else [f'zero = "{amb}.shutdown_time"  # times count from here']
+        ),
     )
     if d.inclination:
         up = "of the +z end over the horizontal; 90 deg: upright"
@@ -61,10 +74,10 @@ def _head(d: Design) -> Iterator[str]:
         yield f'    ["{s.component}.housing", "{_housing(s.component)}.seat"],'
     yield from (
         "]",
+        *(controlled_events(d) if d.levitation else ()),
         "",
         "[run]",
-        'duration = "2 s"  # at most',
-        'until = "settled"  # ends earlier once all seats have; "end" goes on for the whole duration',
+        *(RUN_ON if d.levitation else RUN),
         'macro_step = "20 us"  # `touchdown compare --of steps` advises one for peaks within 1 %',
     )
 
@@ -96,9 +109,11 @@ def _bearings(d: Design) -> Iterator[str]:
         yield from (
             "",
             f"[components.{s.component}]",
-            f'fmu = "amb"  # {d.carries} {s.load:.4g} N at rest',
+            f'fmu = "{"amb_actuator" if d.levitation else "amb"}"  # {d.carries} {s.load:.4g} N at rest',
         )
-        if d.axial and s == d.magnetic[0]:
+        if d.levitation:
+            yield from ("", f"[components.{controller(s)}]", 'fmu = "amb_controller"')
+        elif d.axial and s == d.magnetic[0]:
             yield from _magnetic_along(d)
     for s, bearing, preset in zip(d.touchdown, d.bearings, d.presets, strict=True):
         yield from (
