@@ -31,7 +31,7 @@ class Lines:
     """Of a multisine; a sine is one line."""
 
     frequency: float = real(
-        20.0 * math.pi, "rad/s", "angular frequency, of which lines are multiples", above=0.0, shown="Hz"
+        20.0 * math.pi, "rad/s", "angular frequency, of which lines are multiples", above=0.0, shown="rad/s"
     )
     first: int = integer(1, "multiple of the first line", minimum=1)
     count: int = integer(1, "lines", minimum=1)

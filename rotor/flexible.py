@@ -13,7 +13,9 @@ from functools import lru_cache, partial
 
 import numpy as np
 
+from ..modelkit.base_motion import BASE_PROBLEM, BaseMotion
 from ..modelkit.body import finite
+from ..modelkit.excitation import course_problem
 from ..modelkit.gravity import INCLINATION, gravity_across
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, constants, memory_layout
@@ -78,6 +80,7 @@ class Parameters:
     z: float = real(0.0, "m", "position along the shaft at the start", needs="axial")
     vz: float = real(0.0, "m/s", "velocity along the shaft at the start", needs="axial")
     inclination: float = real(0.0, "rad", INCLINATION)
+    base: BaseMotion = group(BaseMotion)
     thrust_points: int = integer(
         0,
         "points of the thrust over time in use; acts where axial is on",
@@ -135,6 +138,7 @@ CONSTANTS, PROBLEMS = constants(
         "stress.node = {0:g} is not one of the rotor's {1:g} nodes whose stresses are followed",
         ORDER_PROBLEM,
         BRAKE_PROBLEM,
+        BASE_PROBLEM,
     ),
 )
 
@@ -150,6 +154,8 @@ def _problem(m):
         return 4
     if brake_problem(p, m.message_numbers) != 0:
         return 5
+    if course_problem(p.base.course, m.message_numbers) != 0:
+        return 6
     m.message_numbers[0], m.message_numbers[1] = p.stress.node, m.d.nodes
     if p.stress.node > m.d.nodes:
         return 2

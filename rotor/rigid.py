@@ -25,6 +25,8 @@ import math
 from dataclasses import dataclass
 
 from ..modelkit import body
+from ..modelkit.base_motion import BASE_PROBLEM, BaseMotion, base_acceleration, moving
+from ..modelkit.excitation import course_problem
 from ..modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, memory_layout
@@ -47,7 +49,7 @@ from .thrust import NAMES, ORDER_PROBLEM, ThrustPoint, order_problem, thrust, th
 
 # the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
-Z, VZ, WORK_THRUST = range(9, 12)  # along the shaft
+Z, VZ, WORK_OUTSIDE = range(9, 12)  # along the shaft; J since the start: work of thrust and moving base
 RX, RY, WX, WY = range(12, 16)  # rad, rad/s: its tilt
 BRAKED = 16  # J since the start: work of the brake, part of LOSS
 SIZE = 17
@@ -101,6 +103,7 @@ class Parameters:
     wx: float = real(0.0, "rad/s", "rate of the tilt about x at the start", needs="transverse_inertia")
     wy: float = real(0.0, "rad/s", "rate of the tilt about y at the start", needs="transverse_inertia")
     inclination: float = real(0.0, "rad", INCLINATION)
+    base: BaseMotion = group(BaseMotion)
     thrust_points: int = integer(
         0,
         "points of the thrust over time in use; acts where axial is on",
@@ -154,7 +157,12 @@ def rhs(t, q, dq, m):
     dq[Z] = q[VZ]
     push = thrust(p, m.time + t)
     dq[VZ] = _axial_acceleration(az + bz + push, p)
-    dq[WORK_THRUST] = push * q[VZ]
+    dq[WORK_OUTSIDE] = push * q[VZ]
+    if moving(p.base):
+        base_x, base_y = base_acceleration(m.time + t, p.base)
+        dq[VX], dq[VY] = dvx - base_x, dvy - base_y
+        vx, vy = _centre_velocity(q, p)
+        dq[WORK_OUTSIDE] -= p.mass * (base_x * vx + base_y * vy)
     dq[WORK_A] = ax * q[VX] + ay * q[VY] + am * q[SPIN] + az * q[VZ]
     dq[WORK_AMB] = bx * q[VX] + by * q[VY] + bm * q[SPIN] + bz * q[VZ]
     dq[LOSS] = braking * q[SPIN]
@@ -167,6 +175,14 @@ def rhs(t, q, dq, m):
     if p.transverse_inertia > 0.0:
         dq[WORK_A] += _tilting_power(q, ax, ay, a_tilts, p.bearing_position)
         dq[WORK_AMB] += _tilting_power(q, bx, by, b_tilts, p.amb_position)
+
+
+@kernel
+def _centre_velocity(q, p):
+    """Of the centre of mass (m/s, m/s)."""
+    angle = q[ANGLE] + p.unbalance_angle
+    ex, ey = p.eccentricity * math.cos(angle), p.eccentricity * math.sin(angle)
+    return q[VX] - q[SPIN] * ey, q[VY] + q[SPIN] * ex
 
 
 @kernel
@@ -242,17 +258,23 @@ def _publish(q, m):
     if p.transverse_inertia > 0.0:
         _publish_tilt(q, p, m.o.A, p.bearing_position, m.u.amb, p.amb_position, m.half)
         _publish_tilt(q, p, m.o.amb, p.amb_position, m.u.A, p.bearing_position, m.half)
+    if moving(p.base):
+        base_x, base_y = base_acceleration(end, p.base)
+        m.o.A.ax_free, m.o.A.ay_free = m.o.A.ax_free - base_x, m.o.A.ay_free - base_y
+        m.o.amb.ax_free, m.o.amb.ay_free = m.o.amb.ax_free - base_x, m.o.amb.ay_free - base_y
     m.o.A.work = q[WORK_A]
     m.o.amb.work = q[WORK_AMB]
     angle = q[ANGLE] + p.unbalance_angle
-    ex, ey = p.eccentricity * math.cos(angle), p.eccentricity * math.sin(angle)
-    vx, vy = q[VX] - q[SPIN] * ey, q[VY] + q[SPIN] * ex  # of the centre of mass
+    ey = p.eccentricity * math.sin(angle)
+    vx, vy = _centre_velocity(q, p)
     e = m.o.energy
     e.kinetic = 0.5 * p.mass * (vx * vx + vy * vy) + 0.5 * p.inertia * squared(q[SPIN])
     e.potential = p.mass * gravity_across(p.gravity, p.inclination) * (q[Y] + ey)
     if p.axial == 1:
         e.kinetic += 0.5 * p.mass * squared(q[VZ])
-        e.potential -= p.mass * gravity_along(p.gravity, p.inclination) * q[Z] + q[WORK_THRUST]
+        e.potential -= p.mass * gravity_along(p.gravity, p.inclination) * q[Z] + q[WORK_OUTSIDE]
+    elif moving(p.base):
+        e.potential -= q[WORK_OUTSIDE]
     if p.transverse_inertia > 0.0:
         e.kinetic += 0.5 * p.transverse_inertia * (squared(q[WX]) + squared(q[WY]))
     e.dissipated = q[LOSS]
@@ -302,7 +324,7 @@ def _publish_tilt(q, p, seat, position, other, other_at, half):
 def derive(words):
     """Error weights: positions matter at 1 um, velocities at 1 cm/s, spin at 10 rad/s, tilts at 10 urad.
 
-    Returns 1 or 2 where the points of thrust or brake are not in order, else 0.
+    Returns 1, 2 or 3 where the points of thrust, brake or base are not in order, else 0.
     """
     m = words.view(MEMORY)[0]
     m.n = SIZE
@@ -312,7 +334,9 @@ def derive(words):
     m.weight[RX], m.weight[RY], m.weight[WX], m.weight[WY] = 1e5, 1e5, 1e1, 1e1
     if order_problem(m.p, m.message_numbers) != 0:
         return 1
-    return 2 if brake_problem(m.p, m.message_numbers) != 0 else 0
+    if brake_problem(m.p, m.message_numbers) != 0:
+        return 2
+    return 3 if course_problem(m.p.base.course, m.message_numbers) != 0 else 0
 
 
 @kernel
@@ -430,7 +454,7 @@ MODEL = Model(
     derive=derive,
     start=start,
     advance=advance,
-    problems=(ORDER_PROBLEM, BRAKE_PROBLEM),
+    problems=(ORDER_PROBLEM, BRAKE_PROBLEM, BASE_PROBLEM),
     derivative=derivative,
     motion=motion,
     rename=_exposed,

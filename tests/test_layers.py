@@ -41,9 +41,9 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "validation": {"touchdown", "fmpy", "matplotlib"} | SCIENCE,  # above all others
 }
 BUDGETS = {  # lines of a package at most, with room for one feature. A commit that raises one says why
-    "rotor": 6900,
+    "rotor": 6960,
     "bearings": 21480,
-    "modelkit": 4340,
+    "modelkit": 4380,
     "fmus": 3450,
     "master": 21160,
     "studies": 14050,
@@ -88,7 +88,7 @@ ORDER = {  # package: its subpackages and modules, each importing only from thos
     ),
     "modelkit": (
         *("instance", "body", "needs", "model", "ports", "integrators", "numerics"),
-        *("excitation", "gravity", "kernel"),
+        *("base_motion", "excitation", "gravity", "kernel"),
         *("variables", "sheets", "archives", "reader", "units", "errors", "status", "messages"),
     ),
     "validation": (

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...modelkit import body
+from ...modelkit.base_motion import BASE_PROBLEM, BaseMotion, base_acceleration, moving
+from ...modelkit.excitation import course_problem
 from ...modelkit.gravity import gravity_across, gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model, memory_layout
@@ -17,8 +19,8 @@ from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.variables import group, real
 from .mount_law import Body, Ground
 
-X, Y, VX, VY, WORK, LOSS, Z, VZ = range(8)
-SIZE = 8
+X, Y, VX, VY, WORK, LOSS, Z, VZ, WORK_BASE = range(9)
+SIZE = 9
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,7 @@ class Parameters(Ground, Body):
     damping: float = real(
         2500.0, "N.s/m", "damping to the ground, each direction and along the shaft", minimum=0.0
     )
+    base: BaseMotion = group(BaseMotion)
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,7 @@ MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
 
 @kernel
 def rhs(t, q, dq, m):
-    """Derivative dq (8,) of the state q (8,) under the force mean + slope (t - t_mid); t: s."""
+    """Derivative dq (9,) of the state q (9,) under the force mean + slope (t - t_mid); t: s."""
     p, u = m.p, m.u.seat
     mass = p.mass + p.outer_ring
     s = t - m.half
@@ -68,12 +71,17 @@ def rhs(t, q, dq, m):
     dq[Z] = q[VZ]
     dq[VZ] = (fz - p.stiffness * q[Z] - p.damping * q[VZ]) / mass + gravity_along(p.gravity, p.inclination)
     dq[WORK] = fx * q[VX] + fy * q[VY] + fz * q[VZ]
+    dq[WORK_BASE] = 0.0
+    if moving(p.base):
+        base_x, base_y = base_acceleration(m.time + t, p.base)
+        dq[VX], dq[VY] = dq[VX] - base_x, dq[VY] - base_y
+        dq[WORK_BASE] = -mass * (base_x * q[VX] + base_y * q[VY])
     dq[LOSS] = p.damping * (squared(q[VX]) + squared(q[VY]) + squared(q[VZ]))
 
 
 @kernel
 def _publish(q, m):
-    """Outputs at the end of the step, from the state q (8,)."""
+    """Outputs at the end of the step, from the state q (9,)."""
     p, o = m.p, m.o.seat
     mass = p.mass + p.outer_ring
     down, along = gravity_across(p.gravity, p.inclination), gravity_along(p.gravity, p.inclination)
@@ -81,6 +89,9 @@ def _publish(q, m):
     o.x, o.y, o.vx, o.vy = q[X], q[Y], q[VX], q[VY]
     o.ax_free = -(p.stiffness * ex + p.damping * q[VX]) / mass
     o.ay_free = -(p.stiffness * ey + p.damping * q[VY]) / mass - down
+    if moving(p.base):
+        base_x, base_y = base_acceleration(m.time + 2.0 * m.half, p.base)
+        o.ax_free, o.ay_free = o.ax_free - base_x, o.ay_free - base_y
     o.inv_m = 1.0 / mass
     o.k_over_m, o.c_over_m = p.stiffness / mass, p.damping / mass
     o.z, o.vz, o.inv_m_z = q[Z], q[VZ], o.inv_m
@@ -91,17 +102,21 @@ def _publish(q, m):
     e.kinetic = 0.5 * mass * (squared(q[VX]) + squared(q[VY]) + squared(q[VZ]))
     e.potential = 0.5 * p.stiffness * (ex * ex + ey * ey) + mass * down * q[Y]
     e.potential += 0.5 * p.stiffness * squared(q[Z]) - mass * along * q[Z]
+    e.potential -= q[WORK_BASE]
     e.dissipated = q[LOSS]
 
 
 @kernel
 def derive(words):
-    """Error weights: positions matter at 1 um, velocities at 1 cm/s. Returns 0: nothing can be wrong."""
+    """Error weights: positions matter at 1 um, velocities at 1 cm/s.
+
+    Returns 1 where the points of the base are not in order, else 0.
+    """
     m = words.view(MEMORY)[0]
     m.n = SIZE
     m.weight[X], m.weight[Y], m.weight[Z] = 1e6, 1e6, 1e6
     m.weight[VX], m.weight[VY], m.weight[VZ] = 1e2, 1e2, 1e2
-    return 0
+    return 1 if course_problem(m.p.base.course, m.message_numbers) != 0 else 0
 
 
 @kernel
@@ -153,6 +168,7 @@ MODEL = Model(
     advance=advance,
     derivative=derivative,
     motion=motion,
+    problems=(BASE_PROBLEM,),
     starts_from={
         "seat.x": ("x0",),
         **dict.fromkeys(("seat.y", "seat.ay_free", "energy.potential"), ("y0", *_SAG)),

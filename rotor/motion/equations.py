@@ -32,6 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...modelkit.base_motion import base_acceleration, moving
 from ...modelkit.gravity import gravity_across, gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
@@ -41,7 +42,7 @@ from ..thrust import thrust
 ANGLE, SPIN, LOSS, BRAKED, WORK = range(
     5
 )  # behind the modal coordinates and velocities; WORK: one per station
-Z, VZ, WORK_THRUST = range(3)  # of what moves along the shaft, behind them
+Z, VZ, WORK_OUTSIDE = range(3)  # of what moves along the shaft, behind them; of thrust and moving base
 ALONG = 3
 
 
@@ -83,7 +84,7 @@ def auxiliary(q, m):
 
 @kernel
 def shaftwise(q, m):
-    """Motion along the shaft in a state q: a view (3,) with the places Z, VZ, WORK_THRUST."""
+    """Motion along the shaft in a state q: a view (3,) with the places Z, VZ, WORK_OUTSIDE."""
     return q[4 * m.d.modes + WORK + m.d.stations :]
 
 
@@ -120,10 +121,23 @@ def modal_forces(m, since_middle, fx, fy):
     for k in range(m.d.modes):
         fx[k] = 0.0
         fy[k] = -down * m.d.weight[k]
+    if moving(m.p.base):
+        base_x, base_y = base_acceleration(m.time + m.half + since_middle, m.p.base)
+        for k in range(m.d.modes):
+            fx[k] -= base_x * m.d.weight[k]
+            fy[k] -= base_y * m.d.weight[k]
     for j in range(m.d.stations):
         load = m.u.station[j]
         _add(m, j, load.fx + load.dfx * since_middle, load.fy + load.dfy * since_middle, fx, fy)
         _tilt(m, j, load.mx + load.dmx * since_middle, load.my + load.dmy * since_middle, fx, fy)
+
+
+@kernel
+def base_jerk(m):
+    """Mean rate (m/s3, m/s3) of the base's acceleration over the macro step."""
+    before_x, before_y = base_acceleration(m.time, m.p.base)
+    after_x, after_y = base_acceleration(m.time + 2.0 * m.half, m.p.base)
+    return (after_x - before_x) / (2.0 * m.half), (after_y - before_y) / (2.0 * m.half)
 
 
 @kernel
@@ -132,6 +146,11 @@ def modal_force_rates(m, dfx, dfy):
     for k in range(m.d.modes):
         dfx[k] = 0.0
         dfy[k] = 0.0
+    if moving(m.p.base):
+        jerk_x, jerk_y = base_jerk(m)
+        for k in range(m.d.modes):
+            dfx[k] = -jerk_x * m.d.weight[k]
+            dfy[k] = -jerk_y * m.d.weight[k]
     for j in range(m.d.stations):
         load = m.u.station[j]
         _add(m, j, load.dfx, load.dfy, dfx, dfy)
@@ -273,14 +292,18 @@ def rhs(t, q, dq, m):
     for j in range(m.d.stations):
         tail_rate[WORK + j] = _power(m, j, since_middle, state.vx, state.vy, spin)
     along, rate_along = shaftwise(q, m), shaftwise(dq, m)
-    rate_along[Z] = rate_along[VZ] = rate_along[WORK_THRUST] = 0.0
+    rate_along[Z] = rate_along[VZ] = rate_along[WORK_OUTSIDE] = 0.0
     if m.p.axial == 1:
         rate_along[Z] = along[VZ]
         rate_along[VZ] = shaft_force(m, since_middle) / m.d.mass
-        rate_along[WORK_THRUST] = thrust(m.p, m.time + t) * along[VZ]
+        rate_along[WORK_OUTSIDE] = thrust(m.p, m.time + t) * along[VZ]
         for j in range(m.d.stations):
             load = m.u.station[j]
             tail_rate[WORK + j] += (load.fz + load.dfz * since_middle) * along[VZ]
+    if moving(m.p.base):
+        base_x, base_y = base_acceleration(m.time + t, m.p.base)
+        for k in range(m.d.modes):
+            rate_along[WORK_OUTSIDE] -= m.d.weight[k] * (base_x * state.vx[k] + base_y * state.vy[k])
 
 
 @kernel
@@ -324,5 +347,7 @@ def energies(q, m):
     if m.p.axial == 1:
         along = shaftwise(q, m)
         kinetic += 0.5 * d.mass * squared(along[VZ])
-        potential -= d.mass * gravity_along(m.p.gravity, m.p.inclination) * along[Z] + along[WORK_THRUST]
+        potential -= d.mass * gravity_along(m.p.gravity, m.p.inclination) * along[Z] + along[WORK_OUTSIDE]
+    elif moving(m.p.base):
+        potential -= shaftwise(q, m)[WORK_OUTSIDE]
     return kinetic, potential

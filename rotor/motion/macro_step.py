@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...modelkit import numerics
+from ...modelkit.base_motion import base_acceleration, moving
 from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
 from ...modelkit.ports import MODES
@@ -30,11 +31,12 @@ from .equations import (
     SPIN,
     VZ,
     WORK,
-    WORK_THRUST,
+    WORK_OUTSIDE,
     Z,
     accelerations,
     add_spin_up,
     auxiliary,
+    base_jerk,
     modal,
     modal_force_rates,
     modal_forces,
@@ -78,6 +80,8 @@ def account(q, m, step, start, area, turned, swept):
             moment_y += shape * (half * (py[k] + start_y[k]) - area_y[k])
         work = u.fx * x + u.fy * y + u.dfx * moment_x + u.dfy * moment_y
         tail[WORK + j] += work + u.mz * turned + u.dmz * swept
+    if moving(m.p.base):
+        shaftwise(q, m)[WORK_OUTSIDE] += _work_of_base(q, m, half, start, area)
 
 
 @kernel
@@ -90,6 +94,19 @@ def _tilting_work(q, m, j, half, start, area):
         moment_x = half * (px[k] + start.x[k]) - area.x[k]
         moment_y = half * (py[k] + start.y[k]) - area.y[k]
         work += m.d.tilt[j, k] * (u.my * x - u.mx * y + u.dmy * moment_x - u.dmx * moment_y)
+    return work
+
+
+@kernel
+def _work_of_base(q, m, half, start, area):
+    """The work that `account` adds for the base's acceleration (J); half: of the macro step (s)."""
+    px, py, _, _ = modal(q, m)
+    base, jerk, work = base_acceleration(m.time + half, m.p.base), base_jerk(m), 0.0
+    for k in range(m.d.modes):
+        moment_x = half * (px[k] + start.x[k]) - area.x[k]
+        moment_y = half * (py[k] + start.y[k]) - area.y[k]
+        mean = base[0] * (px[k] - start.x[k]) + base[1] * (py[k] - start.y[k])
+        work -= m.d.weight[k] * (mean + jerk[0] * moment_x + jerk[1] * moment_y)
     return work
 
 
@@ -278,7 +295,7 @@ def _slide(q, m, since_middle, h):
     late = h * h * (v / 2.0 + h * (a / 3.0 + h * jerk / 8.0))  # int t v dt
     clock = m.time + m.half + since_middle
     push = thrust(m.p, clock)
-    along[WORK_THRUST] += push * way + (thrust(m.p, clock + h) - push) / h * late
+    along[WORK_OUTSIDE] += push * way + (thrust(m.p, clock + h) - push) / h * late
     for j in range(m.d.stations):
         load = m.u.station[j]
         tail[WORK + j] += (load.fz + load.dfz * since_middle) * way + load.dfz * late
