@@ -49,7 +49,7 @@ class BrakeReport:
     """What the brake does."""
 
     power: float = real(0.0, "W", "power that the brake takes from the rotor", local=True)
-    work: float = real(0.0, "J", "what it took since the start, part of energy.dissipated", local=True)
+    work: float = real(0.0, "J", "what it took since the start, part of energy.dissipated")
 
 
 @kernel

@@ -106,7 +106,7 @@ class Outputs(magnet.Factors):
     period: float = real(0.0, "s", "from sample to sample; 0: none are taken", constant=True)
     link: float = real(0.0, "V", "voltage of the DC link", local=True)
     supplied: float = real(0.0, "J", "work of the magnets on the rotor since the start", local=True)
-    link_energy: float = real(0.0, "J", "that the coils took of the DC link since the start", local=True)
+    link_energy: float = real(0.0, "J", "that the coils took of the DC link since the start")
     eddy_loss: float = real(0.0, "J", "heat of the eddy currents since the start", local=True)
     peak_current: float = real(0.0, "A", "largest of any coil since the start", local=True)
     least_gap: float = real(0.0, "m", "smallest air gap to the magnets since the start", local=True)

@@ -12,6 +12,8 @@ import pytest
 from systems import bits, history, recorded, run_to_end
 
 from touchdown.master.coupling.simulation import open_system
+from touchdown.master.interop.find_scene import find_scene
+from touchdown.master.interop.ssp.write import write_ssp
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
 
@@ -98,6 +100,18 @@ def test_the_same_in_compiled_steps_python_and_fmus(unpacked: Mapping[str, Path]
     assert bits(tmp_path / "compiled" / "result.h5") == bits(tmp_path / "fmus" / "result.h5")
     _, watched, _ = history(two_on_one(), ["link.voltage"])
     assert watched["link.voltage"][-1] == recorded(tmp_path / "fmus")["link/voltage"][-1]
+
+
+def test_a_package_carries_the_link(tmp_path: Path):
+    """With its energies, which are outputs, and its events, to the last bit."""
+    scene = load_scene("disk-caged-hold-up").set({"run.duration": 0.01})
+    write_ssp(scene, tmp_path / "link.ssp")
+    names = ["rotor.A.y", "link.voltage", "link.energy.stored"]
+    _, expected, _ = history(scene, names)
+    _, found, _ = history(find_scene(str(tmp_path / "link.ssp")), names)
+    assert expected["link.voltage"][-1] < 99.9
+    for name in names:
+        assert np.array_equal(expected[name], found[name])
 
 
 def test_a_link_that_is_not_told_and_supplies_that_do_nothing_are_said():
