@@ -97,6 +97,6 @@ def rig_magnets() -> list[Row]:
     """K of F = K i^2/g^2 from poles of 2.9 cm2, 2 x 104 turns and 22.5 degrees between force and pole."""
     circuit: Any = as_record(Circuit())
     magnet = Magnet(gap=780e-6, area=2.9e-4, turns=208.0, pole_angle=math.pi / 8.0)
-    lay_out_circuit(circuit, as_record(magnet), 2.5)
+    lay_out_circuit(circuit, as_record(magnet), 2.5, math.cos(magnet.pole_angle))
     ours = float(circuit["factor"]) * math.cos(magnet.pole_angle)
     return [Row("force factor", "1e-6 N m2/A2", 3.63, 1e6 * ours)]

@@ -179,7 +179,7 @@ def ross_magnetic() -> list[Row]:
     b = published["bearing"]
     circuit: Any = as_record(Circuit())
     magnet = Magnet(gap=b["g0"], area=b["ag"], turns=b["nw"], pole_angle=b["alpha"])
-    lay_out_circuit(circuit, as_record(magnet), b["i0"])
+    lay_out_circuit(circuit, as_record(magnet), b["i0"], math.cos(magnet.pole_angle))
     k_i, k_s = (
         float(circuit["current_factor"]),
         float(circuit["displacement_factor"]) / math.cos(b["alpha"]),
