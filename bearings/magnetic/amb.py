@@ -16,20 +16,27 @@ from ...modelkit.body import nothing_to_watch
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model
 from ...modelkit.ports import (
-    FlexibleSeatMotion,
     Interface,
     MountMotion,
     MountReaction,
     SeatReaction,
     SpatialLoad,
-    StaticLoad,
 )
 from ...modelkit.status import BAD_INPUT, OK
 from ...modelkit.variables import choice, group, integer, real
 from .. import seat
 from ..seat import space
 from .law import ROUNDING, limited
-from .sensing import AT_SENSOR, SENSED, SensedInputs, sensed_places, static_load, sum_of_inputs
+from .sensing import (
+    AT_SENSOR,
+    SENSED,
+    SensedInputs,
+    SpatialHeldMotion,
+    sensed_places,
+    static_load,
+    static_load_along,
+    sum_of_inputs,
+)
 
 SUPPLIED, FX, FY, FZ = range(seat.INSIDE, seat.INSIDE + 4)  # work of the control; force where it lags
 FORCE_SCALE = 10.0  # N
@@ -66,15 +73,10 @@ class Parameters:
 
 
 @dataclass(frozen=True)
-class _SpatialHeldMotion(StaticLoad, FlexibleSeatMotion):
-    """Motion of the journal in space, and what it takes to hold it."""
-
-
-@dataclass(frozen=True)
 class Inputs(SensedInputs):
     """Motion of journal, stator and sensor."""
 
-    journal: _SpatialHeldMotion = group(_SpatialHeldMotion)
+    journal: SpatialHeldMotion = group(SpatialHeldMotion)
     housing: MountMotion = group(MountMotion)
 
 
@@ -173,8 +175,8 @@ def start(words):
     space.take_spatial_inputs(m.q, m)
     j = m.u.journal
     m.o.load_x, m.o.load_y = static_load(j)
-    if m.p.axial.stiffness > 0.0 and j.inv_m_z != 0.0:
-        m.o.load_z = m.p.axial.share * (j.static_fz if j.static_fz != 0.0 else -j.az_free / j.inv_m_z)
+    if m.p.axial.stiffness > 0.0:
+        m.o.load_z = m.p.axial.share * static_load_along(j)
     m.q[FX], m.q[FY], m.q[FZ] = m.o.load_x, m.o.load_y, m.o.load_z
     seat.begin(space.SPATIAL, react, report, m)
     if m.p.shutdown_time > m.time:

@@ -61,7 +61,7 @@ class Parameters:
 
 
 @dataclass(frozen=True)
-class _ActuatorCommand(law.Command):
+class SetPoints(law.Command):
     """Command of a controller to an axis, in one of two ways."""
 
     force_set: float = real(0.0, "N", "force at the centre, where forces are commanded; over k_i")
@@ -71,11 +71,11 @@ class _ActuatorCommand(law.Command):
 class Inputs(amplifier.Feed, sensing.SensedInputs):
     """Motion of journal, stator and sensor, and the controller's commands."""
 
-    axis: tuple = groups(_ActuatorCommand, 2)
+    axis: tuple = groups(SetPoints, 2)
 
 
 @dataclass(frozen=True)
-class _AxisState(law.AxisMeasurement):
+class AxisState(law.AxisMeasurement):
     """State of an axis, as a controller reads it, and beyond."""
 
     current_plus: float = real(0.0, "A", "in the + coil", local=True)
@@ -101,7 +101,7 @@ class Outputs(magnet.Factors):
 
     journal: PlanarSeatReaction = group(PlanarSeatReaction)
     housing: PlanarMountReaction = group(PlanarMountReaction)
-    axis: tuple = groups(_AxisState, 2)
+    axis: tuple = groups(AxisState, 2)
     tick: float = real(0.0, "1", "number of the sample to come: t / sample_time")
     period: float = real(0.0, "s", "from sample to sample; 0: none are taken", constant=True)
     link: float = real(0.0, "V", "voltage of the DC link", local=True)

@@ -12,7 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...modelkit.kernel import kernel
-from ...modelkit.ports import PlanarFlexibleSeatMotion, PointMotion, SprungMotion, StaticLoad
+from ...modelkit.ports import (
+    FlexibleSeatMotion,
+    PlanarFlexibleSeatMotion,
+    PointMotion,
+    SprungMotion,
+    StaticLoad,
+)
 from ...modelkit.variables import Choices, choice, group, integer, real
 from .. import seat
 from .law import limited
@@ -34,6 +40,11 @@ class HeldMotion(StaticLoad, PlanarFlexibleSeatMotion):
 
 
 @dataclass(frozen=True)
+class SpatialHeldMotion(StaticLoad, FlexibleSeatMotion):
+    """Motion of the journal in space, and what it takes to hold it."""
+
+
+@dataclass(frozen=True)
 class SensedInputs:
     """Motion of journal, stator and sensor."""
 
@@ -43,15 +54,21 @@ class SensedInputs:
 
 
 @dataclass(frozen=True)
-class Sensor:
-    """Both axes alike."""
+class Transducer:
+    """Of each axis."""
 
-    at: int = choice(0, SENSED, "where position is measured")
     bandwidth: float = real(1e4 * math.pi, "rad/s", "of the low-pass", above=0.0, shown="rad/s")
     range: float = real(0.5e-3, "m", "beyond it the signal stays where it is", above=0.0)
     gain: float = real(1.0, "1", "signal over position")
     noise: float = real(0.0, "m", "largest deviation of a sample, evenly distributed", minimum=0.0)
     seed: int = integer(1, "of the noise", minimum=0, needs="noise")
+
+
+@dataclass(frozen=True)
+class Sensor(Transducer):
+    """Both axes alike."""
+
+    at: int = choice(0, SENSED, "where position is measured")
 
 
 @kernel
@@ -105,3 +122,11 @@ def static_load(j):
     if j.inv_m > 0.0 and j.static_fx == 0.0 and j.static_fy == 0.0:
         return -j.ax_free / j.inv_m, -j.ay_free / j.inv_m
     return j.static_fx, j.static_fy
+
+
+@kernel
+def static_load_along(j):
+    """Force (N) that holds the journal j at rest along the shaft: as it states, or what it needs there."""
+    if j.inv_m_z != 0.0 and j.static_fz == 0.0:
+        return -j.az_free / j.inv_m_z
+    return j.static_fz if j.inv_m_z != 0.0 else 0.0

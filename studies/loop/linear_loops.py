@@ -29,7 +29,7 @@ from ...master.scene.scene import Scene
 from .measured_loop import MeasuredLaw, measure
 from .plant import FreeRotor, free_rotor
 
-ACTUATOR = "amb_actuator"  # models, by their FMUs' names
+ACTUATOR, AXIAL = "amb_actuator", "amb_axial"  # models, by their FMUs' names
 CONTROLLER = "amb_controller"
 LAW = "amb"
 SENSOR = 1.0  # of sensing.at and sensed
@@ -205,6 +205,7 @@ class Sampled(Loops):
         self.bearing_names = tuple(names)
         self.rotor = free_rotor(scene, names, [b.by_sensor for b in self.bearings])
         self.names = tuple(f"{b.name}.axis[{k}]" for b in self.bearings for k in (1, 2))
+        self.left_out = [name for _, name in scene.control if name not in names]
         self.speed, self.highest = self.rotor.speed, 0.99 * math.pi / self.period
         self._actuators = [one for bearing in self.bearings for one in bearing.axes]
         ends = 2 * self.rotor.places + np.cumsum([0, *(one.states for one in self._actuators)])
@@ -425,6 +426,9 @@ def controlled_bearings(scene: Scene, system: System) -> list[Controlled]:
     found: list[Controlled] = []
     used: dict[str, int] = {}
     for controller, name in scene.control:
+        if scene.components[name].fmu == AXIAL:
+            used[controller] = used.get(controller, 0) + 1
+            continue
         if scene.components[name].fmu != ACTUATOR:
             raise TouchdownError(
                 f"{name} of scene {scene.name} is {scene.components[name].fmu}, whose linear equations are "
@@ -446,6 +450,10 @@ def controlled_bearings(scene: Scene, system: System) -> list[Controlled]:
             )
         )
         used[controller] = found[-1].first + 2
+    if not found:
+        raise TouchdownError(
+            f"scene {scene.name} controls no bearing across its shaft; {AXIAL} is not looked at"
+        )
     return found
 
 

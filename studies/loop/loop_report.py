@@ -26,6 +26,8 @@ def lines(found: Found) -> Iterator[str]:
     loops, nominal = found.loops, found.own
     if isinstance(loops, Sampled):
         yield f"sampled every {1e6 * loops.period:g} us; {_law(loops)}"
+        if loops.left_out:
+            yield f"across the shaft; {joined(loops.left_out)} along it is not in these loops"
         for bearing in loops.bearings:
             yield _magnet(bearing, found.clearance)
         yield from _budget(loops, nominal)

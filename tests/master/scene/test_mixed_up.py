@@ -42,7 +42,7 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
         (("rotor", SPINDLE_MATRICES), f"`touchdown import rotor {SPINDLE_MATRICES}` makes one of its"),
         (("rotor", "rotor"), "did you mean rotor_I or rotor_II, or give"),
         (("rotor", "amb"), "there is no rotor called amb; there are: compressor_rotor, rotor_I, "
-         "rotor_II"),
+         "rotor_II, spindle_rotor"),
         (("new", "m", "--rotor", "rotor1-9000", "--bearings", "7004"),
          "rotor1-9000 is a scene, no rotor; `touchdown scenes rotor1-9000` says which its rotor is"),
         (("report", "mine.toml"), "mine.toml is a scene; `touchdown run mine.toml` first"),

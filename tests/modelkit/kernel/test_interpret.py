@@ -23,7 +23,7 @@ from touchdown.modelkit.variables import Causality, MemoryRecord, Scalar
 
 PHYSICS = ("modelkit", "rotor", "bearings")
 QUICK = {
-    *("amb", "amb_actuator", "amb_controller", "bushing", "dc_link"),
+    *("amb", "amb_actuator", "amb_axial", "amb_controller", "bushing", "dc_link"),
     *("foundation", "housing", "mount", "rigid_rotor"),
 }
 TRIALS = 4
