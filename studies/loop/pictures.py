@@ -114,7 +114,7 @@ def _sensitivity(figure: Figure, found: Found) -> None:
         levels = [(20.0 * math.log10(limit), name) for limit, name in ZONES]
         _zones(axes, levels)
         axes.set_ylim(LEAST_DB if axes is left else 0, 18)
-    stability = "" if nominal.margins else ", unstable"
+    stability = ", dots: measured" if found.measured else "" if nominal.margins else ", unstable"
     _label(left, "frequency [Hz]", "|S| [dB]",
            f"{found.scene.title}, {RPM * nominal.speed:.0f} rpm{stability}")  # fmt: skip
     _label(right, "speed [rpm]", "max |S| [dB]")
