@@ -46,7 +46,7 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "modelkit": 4380,
     "fmus": 3450,
     "master": 21160,
-    "studies": 14050,
+    "studies": 14100,
     "reports": 6440,
     "command": 3610,
     "validation": 4400,

@@ -9,8 +9,8 @@ not at the start for a rotor that turns the other way, which changes the sign of
 law of forces is divided by the bearing's k_i.
 
 A law of one axis goes for each, one of a bearing's two for each bearing. There is no anti-windup but that
-of the law itself. `levitation` says when it acts. Where the bearing takes no samples it samples by its own
-clock, at the ends of macro steps.
+of the law itself. `levitation` says when it acts. Where the bearing takes no samples, or does so more often
+than the law, this samples by its own clock, at the ends of macro steps.
 """
 
 from __future__ import annotations
@@ -36,7 +36,8 @@ METHODS = Choices("Discretisation", ("tustin", "matched"), ("", "poles and zeros
 OF_CONTINUOUS = ("sample_time", "method", "exact_at")  # what a law in continuous time needs beside its file
 SAME = 1e-6  # of a sample time; what differs by less is the same
 PROBLEMS = (
-    "its law has a sample_time of {0:g} s, and the magnetic bearing one of {1:g} s; set both the same",
+    "its law has a sample_time of {0:g} s, and the magnetic bearing one of {1:g} s; set both the same, or "
+    "the law's a multiple",
     "its law is for speeds from {0:g} to {1:g} rad/s, and the rotor's is {2:g} rad/s; give the file speeds "
     "of both signs",
 )
@@ -189,7 +190,7 @@ def derive(words):
     m.weight[0] = 0.0
     d, ours, theirs, said = m.d, m.d.sample_time, m.u.period, m.message_numbers
     said[0], said[1] = ours, theirs
-    if theirs > 0.0 and abs(ours - theirs) > SAME * theirs:
+    if theirs > 0.0 and (ours < 0.5 * theirs or abs(ours - round(ours / theirs) * theirs) > SAME * theirs):
         return 1
     said[0], said[1], said[2] = d.speed[0], d.speed[d.speeds - 1], m.u.speed
     return 2 if _turns_the_other_way(d.speed, d.speeds, m.u.speed) else 0
@@ -203,10 +204,16 @@ def _report(m):
 
 
 @kernel
+def _by_own_clock(m):
+    """Whether the bearing's samples are not the law's."""
+    return abs(m.d.sample_time - m.u.period) > SAME * m.d.sample_time
+
+
+@kernel
 def start(words):
     """Levitated, with what holds the static load."""
     m = words.view(MEMORY)[0]
-    levitation.start(_begin, m.u.period == 0.0, m.d.sample_time, m)
+    levitation.start(_begin, _by_own_clock(m), m.d.sample_time, m)
     m.o.law.deviation, m.o.law.at, m.o.law.unstable = m.d.law.deviation, m.d.law.at, m.d.law.unstable
     _report(m)
 
@@ -217,8 +224,7 @@ def advance(words, work, time, step):
     m = words.view(MEMORY)[0]
     if not math.isfinite(m.u.speed):
         return BAD_INPUT
-    own = m.u.period == 0.0
-    status = levitation.advance(_begin, _answer, own, m.d.sample_time, m, time, step)
+    status = levitation.advance(_begin, _answer, _by_own_clock(m), m.d.sample_time, m, time, step)
     _report(m)
     return status
 

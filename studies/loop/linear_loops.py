@@ -1,7 +1,9 @@
 """The closed loops: magnetic bearings with controllers, sampled, or with their own law, in continuous time.
 
 Sampled: between ticks the plant is integrated exactly with the control currents held; what a controller
-makes of a sample acts from the next tick on. All controllers must have the same time between samples.
+makes of a sample acts from the next tick on. All controllers must have the same time between samples, that
+of the bearings or, by their own clocks, a multiple of it. Then a period goes from a used sample to the
+next, the old set points act for one tick of it, the new ones for the rest, and S is that at these samples.
 """
 
 from __future__ import annotations
@@ -18,9 +20,10 @@ from scipy.linalg import block_diag, eigvals, expm, matrix_balance
 
 from ...bearings.magnetic.law_file import UP_TO
 from ...bearings.magnetic.linear import SIGNAL, LinearActuator, LinearLaw
-from ...bearings.magnetic.state_space import MEMORY, law_of_axes
+from ...bearings.magnetic.state_space import MEMORY, SAME, law_of_axes
 from ...master.common.errors import TouchdownError
 from ...master.common.text import HZ
+from ...master.components.component import Component
 from ...master.components.in_process import InProcessComponent
 from ...master.coupling.connections import COMMAND, SET_POINTS
 from ...master.coupling.simulation import opened
@@ -177,6 +180,14 @@ class Controlled:
         return np.array([[c, s], [-s, c]])
 
 
+class Held(NamedTuple):
+    """A plant over a period, or its rates."""
+
+    A: np.ndarray  # per state
+    B: np.ndarray  # per control current that acts at its begin
+    soon: np.ndarray | None = None  # per control current that acts from the first tick in it on; None: none
+
+
 class Unbalance(NamedTuple):
     """Amplitudes under a rotor's unbalance, by axis."""
 
@@ -197,7 +208,8 @@ class Sampled(Loops):
             self.bearings = tuple(controlled_bearings(scene, system))
             weak = [(b.name, one) for b in self.bearings for one in b.axes if not one.holds]
             self.too_weak = list(dict.fromkeys(f"{name}: {next(one.shortfalls())}" for name, one in weak))
-            self.period = _period(scene, system, self.bearings)
+            self.tick = _period(scene, system, self.bearings)
+            self.period = _law_period(system, self.bearings, self.tick)
             laws = known_laws(scene, system, self.bearings)
         self.laws: _Laws = laws or measured_laws(scene, self.bearings, self.period)
         self.law = self.laws.state_space
@@ -210,7 +222,7 @@ class Sampled(Loops):
         self._actuators = [one for bearing in self.bearings for one in bearing.axes]
         ends = 2 * self.rotor.places + np.cumsum([0, *(one.states for one in self._actuators)])
         self._places = [slice(*ends[k : k + 2]) for k in range(len(self.names))]  # of the axes' states
-        self._ahead: tuple[float, np.ndarray] = math.nan, np.zeros((0, 0))  # last speed, and `_held` there
+        self._ahead: tuple[float, Held] | None = None  # last speed, and `_held` there
         self._sees = np.zeros((len(self.names), ends[-1]))  # signals per state
         for axis, place in enumerate(self._places):
             self._sees[axis, place.start + SIGNAL] = self._actuators[axis].sensing.gain
@@ -222,10 +234,9 @@ class Sampled(Loops):
         pairs = [(b, d) for b, bearing in enumerate(self.bearings) for d in bearing.directions]
         return np.array([rotor.along(rotor.acts[b], direction) for b, direction in pairs])
 
-    def plant(self, speed: float, sampled: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """A, B and C at a speed (rad/s), from control currents (A) to signals (m), all loops open."""
-        a, b = self._held(speed) if sampled else self._plant(speed)
-        return a, b, self._sees
+    def plant(self, speed: float, sampled: bool) -> tuple[Held, np.ndarray]:
+        """At a speed (rad/s), from control currents (A) to signals (m), all loops open; C."""
+        return self._held(speed) if sampled else Held(*self._plant(speed)), self._sees
 
     def _plant(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Rates per state, and per control current."""
@@ -244,19 +255,23 @@ class Sampled(Loops):
             b[place, axis] = one.driven
         return a, b
 
-    def _held(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
-        """The plant from tick to tick, control currents held."""
-        if self._ahead[0] != speed:
+    def _held(self, speed: float) -> Held:
+        """The plant from a sample that is used to the next, control currents held."""
+        if self._ahead is None or self._ahead[0] != speed:
             a, b = self._plant(speed)
             n, m = b.shape
             whole = np.zeros((n + m, n + m))
             whole[:n, :n], whole[:n, n:] = a, b
-            self._ahead = speed, expm(whole * self.period)[:n]
-        n, ahead = self._places[-1].stop, self._ahead[1]
-        return ahead[:, :n], ahead[:, n:]
+            ahead = expm(whole * self.tick)[:n]
+            held = Held(ahead[:, :n], ahead[:, n:])
+            if self.period > self.tick:
+                more = expm(whole * (self.period - self.tick))[:n]
+                held = Held(more[:, :n] @ held.A, more[:, :n] @ held.B, more[:, n:])
+            self._ahead = speed, held
+        return self._ahead[1]
 
     def closed(self, speed: float) -> ClosedLoops:
-        a, b = self._held(speed)
+        a, b, soon = self._held(speed)
         law = self.laws.at(speed)
         n, m, k = len(a), len(self.names), len(law.A)
         delays = self.laws.delay
@@ -270,12 +285,16 @@ class Sampled(Loops):
             rows = slice(n + k + m * d, n + k + m * (d + 1))
             closed[rows, n + k + m * (d + 1) : n + k + m * (d + 2)] = np.eye(m)
         into[n : n + k], into[size - m :], seen[:, :n] = -law.B, -law.D, self._sees
+        if soon is not None and delays == 1:  # the answer to this very sample
+            closed[:n, n : n + k], into[:n] = soon @ law.C, -soon @ law.D
+        elif soon is not None:
+            closed[:n, n + k + m : n + k + 2 * m] = soon
         return ClosedLoops(closed + into @ seen, into, seen, self.period)
 
     def swing(self, speed: float, omega: float, force: np.ndarray) -> np.ndarray:
         """As of all `Loops`, at the ticks."""
         closed, (a, _) = self.closed(speed), self._plant(speed)
-        held, _ = self._held(speed)
+        held = self._held(speed).A
         n, places, z = len(a), self.rotor.places, np.exp(1j * omega * self.period)
         driven = np.zeros((n, *force.shape[1:]), complex)
         driven[places : 2 * places] = force
@@ -468,18 +487,29 @@ def _period(scene: Scene, system: System, bearings: tuple[Controlled, ...]) -> f
     return periods.pop()
 
 
+def _law_period(system: System, bearings: tuple[Controlled, ...], tick: float) -> float:
+    """From sample to sample (s) of all controllers, of bearings that sample every `tick` (s)."""
+    periods = dict[str, float]()
+    for name in dict.fromkeys(b.controller for b in bearings):
+        periods[name], d = tick, constants(system.components[name])
+        if d is not None:
+            periods[name] = float(d["sample_time"])
+        elif f"{name}.clock" in system and system.value(f"{name}.clock"):
+            periods[name] = system.value(f"{name}.sample_time")
+    several = round(next(iter(periods.values())) / tick)
+    if not all(math.isclose(period, several * tick, rel_tol=SAME) for period in periods.values()):
+        every = ", ".join(f"{name} every {period:g} s" for name, period in periods.items())
+        raise TouchdownError(
+            f"controllers sample by clocks of their own ({every}), magnetic bearings every {tick:g} s; "
+            "such a loop is not known. Give all controllers the bearings' sample time or one multiple of it"
+        )
+    return several * tick
+
+
 def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> KnownLaws:
     """Of the controllers, for the axes in the bearings' order."""
     axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
     channels, mixed = list[LinearLaw](), np.eye(len(axes))
-    for b in bearings:
-        sample_time = system.value(f"{b.controller}.sample_time")
-        if system.value(f"{b.controller}.clock") and not math.isclose(sample_time, period, rel_tol=1e-9):
-            raise TouchdownError(
-                f"{b.controller} samples by its own clock every {sample_time:g} s, and "
-                f"{b.name}.sample_time is {period:g} s; its loop is not known. "
-                f"Set {b.controller}.clock = tick"
-            )
     for row, (controller, axis) in enumerate(axes):
 
         def value(variable: str, controller: str = controller) -> float:
@@ -506,17 +536,24 @@ def _delay(system: System, bearings: Sequence[Controlled]) -> int:
     return delays.pop()
 
 
+def constants(component: Component) -> Any:
+    """Of a controller by a file, the model's; None of another."""
+    if isinstance(component, InProcessComponent) and component.instance.model.memory is MEMORY:
+        return component.instance.memory["d"][0].copy()
+    return None
+
+
 def known_laws(scene: Scene, system: System, bearings: tuple[Controlled, ...]) -> _Laws | None:
     """Of the controllers, in a system that is initialised; None where they are to be measured."""
     names = {b.controller for b in bearings}
     if all(scene.components[name].fmu == CONTROLLER for name in names):
-        return _laws(system, bearings, _period(scene, system, bearings))
+        return _laws(system, bearings, _law_period(system, bearings, _period(scene, system, bearings)))
     by_name, order = _in_order(bearings)
     found: dict[str, Any] = {}  # constants of the models
     for name in by_name:
-        component = system.components[name]
-        if isinstance(component, InProcessComponent) and component.instance.model.memory is MEMORY:
-            found[name] = component.instance.memory["d"][0].copy()
+        d = constants(system.components[name])
+        if d is not None:
+            found[name] = d
     if len(found) < len(by_name):
         for name, d in found.items():
             if d["speeds"] > 1:

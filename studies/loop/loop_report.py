@@ -28,6 +28,9 @@ def lines(found: Found) -> Iterator[str]:
         yield f"sampled every {1e6 * loops.period:g} us; {_law(loops)}"
         if loops.left_out:
             yield f"across the shaft; {joined(loops.left_out)} along it is not in these loops"
+        if loops.period > loops.tick:
+            tick = f"{1e6 * loops.tick:g} us"
+            yield f"bearings sample every {tick}; the last sample in a law's period acts {tick} later"
         for bearing in loops.bearings:
             yield _magnet(bearing, found.clearance)
         yield from _budget(loops, nominal)

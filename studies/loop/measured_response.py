@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...master.common.errors import TouchdownError
 from ...master.common.text import percent
 from ...master.coupling.connections import AXIS, COMMAND, SET_POINTS
 from ...master.coupling.observer import Observer, RunState
@@ -97,6 +98,11 @@ class _Bench:
     @classmethod
     def of(cls, scene: Scene, loops: Sampled) -> _Bench:
         """Lines from `FIRST` to `LAST`, and the scene without what is left out."""
+        if loops.period > loops.tick:
+            raise TouchdownError(
+                f"--measure: controllers sample every {loops.period:g} s by their clocks, their bearings "
+                f"every {loops.tick:g} s; give them one sample time, or leave --measure out"
+            )
         length = round(1.0 / (FIRST * loops.period))
         numbers = [1]
         while (line := interpret(next_line, numbers[-1], Lines(ratio=RATIO, odd=1))) <= LAST * length:

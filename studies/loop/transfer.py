@@ -62,7 +62,7 @@ def controlled(loops: Loops) -> Sampled:
 
 def plant(loops: Sampled, speed: float, sampled: bool) -> StateSpace:
     """At a speed (rad/s): x' = A x + B u, or from sample to sample, u as late as in the loops."""
-    a, b, c = loops.plant(speed, sampled)
+    (a, b, soon), c = loops.plant(speed, sampled)
     n, m, delay = len(a), len(loops.names), loops.laws.delay if sampled else 0
     whole = np.zeros((n + m * delay, n + m * delay))  # the plant, then set points that wait, oldest first
     into, seen = np.zeros((len(whole), m)), np.zeros((m, len(whole)))
@@ -70,6 +70,10 @@ def plant(loops: Sampled, speed: float, sampled: bool) -> StateSpace:
     if delay:
         whole[:n, n : n + m], into[-m:] = b, np.eye(m)
         whole[n:-m, n + m :] = np.eye(m * (delay - 1))
+        if soon is not None and delay == 1:
+            into[:n] = soon
+        elif soon is not None:
+            whole[:n, n + m : n + 2 * m] = soon
     else:
         into[:n] = b
     return StateSpace(whole, into, seen, np.zeros((m, m)))
