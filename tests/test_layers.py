@@ -42,7 +42,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 }
 BUDGETS = {  # lines of a package at most, with room for one feature. A commit that raises one says why
     "rotor": 6960,
-    "bearings": 21680,
+    "bearings": 21700,
     "modelkit": 4380,
     "fmus": 3450,
     "master": 21160,
