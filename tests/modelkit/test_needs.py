@@ -74,8 +74,8 @@ BESIDE: Mapping[str, Mapping[str, float]] = {
     "ball_friction.kind": {"balls.bunching": 1.0},
     **{f"mode[1].{name}": {"mode[1].A.x": 1.0} for name in ("omega", "damping_ratio", "mass")},
 }
-UNSEEN = {  # a controller that samples nothing here; rings that may not bend, or do not tilt
-    *("amb_controller.gain.filter", "amb_controller.event[1].time"),
+UNSEEN = {  # a controller that samples nothing here; one axis, both; rings that do not bend or tilt
+    *("amb_controller.gain.filter", "amb_controller.event[1].time", "amb_axial.inject.axis"),
     *(
         f"angular_{which}.ring.{name}"
         for which in ("caged", "cageless")
@@ -149,7 +149,7 @@ def beside(name: str) -> dict[str, float]:
 
 def met(term: Term, v: Variable) -> float:
     """A value that meets a term."""
-    value = by_end(MEETING, term.name) if term.compare == "!=" else term.number
+    value = by_end(MEETING, term.name) if term.compare == "!=" else term.number + (term.compare == ">")
     return float(value if isinstance(value, float) else v.default or 1.0)
 
 

@@ -244,9 +244,10 @@ def test_what_is_asked_for_must_be_there() -> None:
 
 
 # of mounts: what happened up to then, of which a drop keeps the last; heat of a foundation; of bearings,
-# temperatures and gaps, which follow from the recorded heat
+# temperatures and gaps, which follow from the recorded heat; of magnets, heat of their eddy currents, and
+# what is injected, which its lines state
 ONLY_AT_END = re.compile(
-    r"(^|\.)(peak_stroke|peak_stop_force|stop_time|stop_hits|mount_[A-D]\.heat\.\w+|modes_heat)$"
+    r"(^|\.)(peak_stroke|peak_stop_force|stop_time|stop_hits|mount_[A-D]\.heat\.\w+|modes_heat|eddy_loss|injected)$"
     r"|^temperature\.\w+$|^gaps\.(play|clearance)$"
 )
 
