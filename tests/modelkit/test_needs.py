@@ -68,6 +68,7 @@ BESIDE: Mapping[str, Mapping[str, float]] = {
     },
     "axial.force_limit": {"axial.force_limit": 5.0},
     "stop.stiffness": {"stop.gap": 1e-9},
+    "lines.ratio": {"lines.ratio": 2.0},  # of the next whole multiple
     "contact.damping_ratio": {"contact.mass": 1.0},
     "ring.width": {"ring.width": 0.012},
     "ball_contact.damping_ratio": {"balls.bunching": 1.0},  # balls that touch
