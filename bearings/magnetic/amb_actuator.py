@@ -17,7 +17,7 @@ import math
 from dataclasses import dataclass, fields
 
 from ...modelkit.excitation import Lines
-from ...modelkit.kernel import kernel
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.model import Model
 from ...modelkit.numerics import squared
 from ...modelkit.ports import Interface, Load, PlanarMountReaction, PlanarSeatReaction
@@ -142,7 +142,7 @@ def displacement(t, q, m):
     return (c * ex + s * ey, c * ey - s * ex), (c * sx + s * sy, c * sy - s * sx)
 
 
-@kernel
+@inlined
 def coil_state(coil, q, gap, volt, m):
     """Of a coil: voltage (V), current (A), rate of its integral (A), current cut off, voltage at its limit.
 
@@ -212,7 +212,7 @@ def drive(time, u, seen, q, dq, m):
         dq[EDDY_LOSS] = 0.0
     for coil in range(2 * len(u)):
         flux = q[FLUX + coil]
-        gap = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d)
+        gap = magnet.gap_of(coil, u, m.p.magnet, m.d)
         v, i, dq[RESET + coil], cut, full = coil_state(coil, q, gap, volt, m)
         any_cut, any_full = any_cut or cut, any_full or full
         rate = v - m.p.amplifier.resistance * i
@@ -223,8 +223,9 @@ def drive(time, u, seen, q, dq, m):
         pull = m.d.pull * squared(max(flux, 0.0))
         pull = pull if coil % 2 == 0 else -pull
         f1, f2 = (f1 + pull, f2) if coil < 2 else (f1, f2 + pull)
-    for k in range(len(u)):
-        dq[SENSE + k] = sensing.rate(seen[k], q[SENSE + k], m.p.sensing)
+    last = SENSE + len(u) - 1
+    dq[SENSE] = sensing.rate(seen[0], q[SENSE], m.p.sensing)
+    dq[last] = sensing.rate(seen[-1], q[last], m.p.sensing)
     dq[TAKEN] = power
     dq[AT_CURRENT], dq[AT_VOLTAGE] = 1.0 if any_cut else 0.0, 1.0 if any_full else 0.0
     return f1, f2
@@ -256,16 +257,14 @@ def rhs(t, q, dq, m):
 def watch(t, u, q, m):
     """Note the largest current and the smallest gap; u: displacements along each axis (m)."""
     for coil in range(2 * len(u)):
-        gap = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d)
+        gap = magnet.gap_of(coil, u, m.p.magnet, m.d)
         i = magnet.current_of(q[FLUX + coil], gap, m.p.magnet, m.d)
         if m.d.eddy > 0.0:
             volt = amplifier.link_voltage(m.time + m.s.done + t, m)
             _, i, _, _, _ = coil_state(coil, q, gap, volt, m)
         m.o.peak_current = max(m.o.peak_current, i)
-    square = 0.0
-    for one in u:
-        square += one * one
-    m.o.least_gap = min(m.o.least_gap, m.p.magnet.gap - math.sqrt(square))
+    across = math.sqrt(u[0] * u[0] + u[-1] * u[-1]) if len(u) > 1 else abs(u[0])
+    m.o.least_gap = min(m.o.least_gap, m.p.magnet.gap - across)
 
 
 @kernel
@@ -320,7 +319,7 @@ def report_axes(u, q, m):
     """Currents, voltages, forces, and without a sample time what the sensors tell now; u: as in `watch`."""
     volt = amplifier.link_voltage(m.time + 2.0 * m.half, m)
     for coil in range(2 * len(u)):
-        gap, o = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d), m.o.axis[coil // 2]
+        gap, o = magnet.gap_of(coil, u, m.p.magnet, m.d), m.o.axis[coil // 2]
         v, i, _, _, _ = coil_state(coil, q, gap, volt, m)
         if coil % 2 == 0:
             o.voltage_plus, o.current_plus = v, i
@@ -384,7 +383,7 @@ def begin_axes(forces, u, seen, m):
         m.s.ticks = math.ceil((m.time - ROUNDING) / m.p.sample_time)
     for coil in range(2 * len(u)):
         target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].set, m.p.amplifier)
-        gap = magnet.gap_of(coil, u[coil // 2], m.p.magnet, m.d)
+        gap = magnet.gap_of(coil, u, m.p.magnet, m.d)
         m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
         for k in range(EDDIES if m.d.eddy > 0.0 else 0):
             m.q[EDDY + EDDIES * coil + k] = m.q[FLUX + coil]

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...modelkit.kernel import kernel
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import Choices, choice, integer, real
 
 AXES, COILS = 2, 4
@@ -101,7 +101,7 @@ class PartState:
     fault: int = integer(NOTHING, "number of the last event, 0: it works")
 
 
-@kernel
+@inlined
 def link_voltage(time, m):
     """Voltage (V) of the link at a time (s); m: an actuator's memory."""
     off, p = m.s.link_off, m.p.supply
@@ -112,7 +112,7 @@ def link_voltage(time, m):
     return p.voltage * math.exp(-(time - off) / p.decay)
 
 
-@kernel
+@inlined
 def set_point(coil, control, p):
     """Set point (A) of a coil by its axis' control current (A), and whether it is cut off above."""
     current = p.bias + control if coil % 2 == 0 else p.bias - control

@@ -257,7 +257,7 @@ def _coils(p: Magnet, d: SimpleNamespace, a: Amplifier, axis: int, hold: float) 
         if flux == 0.0:
             continue
         per_flux, per_gap = magnet.current_slopes(flux, p.gap, p, d)
-        ahead, behind = (_plain(magnet.gap_of)(coil, u, p, d) for u in (0.125 * p.gap, -0.125 * p.gap))
+        ahead, behind = (_plain(magnet.gap_of)(coil, (u, u), p, d) for u in (0.125 * p.gap, -0.125 * p.gap))
         yield Coil(
             sign,
             current,

@@ -35,7 +35,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...modelkit.kernel import kernel
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.numerics import squared
 from ...modelkit.variables import real
 from .amplifier import set_point
@@ -99,6 +99,8 @@ class Circuit(Factors):
     """Constants that follow from the magnets and the bias current."""
 
     factor: float = real(0.0, "N.m2/A2", "K of F = K i^2 / g^2")
+    per_gap: float = real(0.0, "A/(V.s.m)", "current per flux linkage and air gap, 1/(2 K)")
+    saturation: float = real(0.0, "V.s", "flux linkage at which the iron saturates")
     inductance: float = real(0.0, "V.s/A", "of a coil, with the journal centred")
     pull: float = real(0.0, "N/(V2.s2)", "force over the flux linkage squared")
     eddy: float = real(
@@ -113,6 +115,7 @@ class Circuit(Factors):
 def lay_out_circuit(d, p, bias, pole):
     """Set the constants d (`Circuit`) of magnets p (`Core`) with a bias current (A); pole: cosine."""
     d.factor = 0.25 * MU0 * p.turns * p.turns * p.area
+    d.per_gap, d.saturation = 0.5 / d.factor, p.flux_limit * p.turns * p.area
     d.inductance = 2.0 * d.factor / p.gap
     d.eddy = 1.0 / (d.inductance * math.sqrt(p.eddy_bandwidth)) if p.eddy_bandwidth > 0.0 else 0.0
     d.pole = pole
@@ -121,13 +124,12 @@ def lay_out_circuit(d, p, bias, pole):
     d.displacement_factor = -4.0 * d.factor * squared(bias) / (p.gap * p.gap * p.gap) * squared(d.pole)
 
 
-@kernel
+@inlined
 def current_of(flux, gap, p, d):
     """Current (A) that goes with a flux linkage (V s) over an air gap (m)."""
-    current = 0.5 * flux * gap / d.factor
-    density = flux / (p.turns * p.area)
-    if density > p.flux_limit:
-        current += p.iron_path / (MU0 * p.turns) * (density - p.flux_limit)
+    current = flux * gap * d.per_gap
+    if flux > d.saturation:
+        current += p.iron_path / (MU0 * p.turns) * (flux / (p.turns * p.area) - p.flux_limit)
     return current
 
 
@@ -150,10 +152,10 @@ def flux_of(current, gap, p, d):
     return (current + iron * p.flux_limit) / (per_flux + iron / linked)
 
 
-@kernel
-def gap_of(coil, displacement, p, d):
-    """Mean air gap (m) of a coil (0 to 3: first axis +, -, second axis +, -), its axis displaced (m)."""
-    u = d.pole * displacement
+@inlined
+def gap_of(coil, displacements, p, d):
+    """Mean air gap (m) of a coil (0 to 3: first axis +, -, second axis +, -), its axes displaced (m)."""
+    u = d.pole * (displacements[0] if coil < 2 else displacements[-1])  # fixed places: others cost a third
     return max(p.gap - u if coil % 2 == 0 else p.gap + u, SMALLEST_GAP * p.gap)
 
 
