@@ -45,9 +45,9 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "bearings": 21700,
     "modelkit": 4380,
     "fmus": 3450,
-    "master": 21160,
+    "master": 21190,
     "studies": 14100,
-    "reports": 6440,
+    "reports": 6445,
     "command": 3610,
     "validation": 4400,
 }

@@ -43,7 +43,7 @@ COIL_SHORT, COIL_STUCK, SENSOR_LOST, SENSOR_STUCK, SENSOR_ON = range(5, 10)
 LINK, COIL, SENSOR = range(3)
 OF = (-1, COIL, COIL, LINK, LINK, COIL, COIL, SENSOR, SENSOR, SENSOR)  # by kind: what it happens to
 PROBLEMS = (
-    "event[{0:g}].coil = {1:g} is of a sensor; an axis has one: 1 to {2:g}, and 0: all",
+    "event[{0:g}].coil = {1:g}: sensors are numbered 1 to {2:g} by axis; 0 is all",
     "event[{0:g}] is of its own link, and another one feeds it; make it an event of that one (off, on)",
 )
 

@@ -360,7 +360,7 @@ def amb_margins(
     if size <= 0.0:
         raise TouchdownError(f"amplitude = {amplitude} must be above 0 m")
     if amplitude is not None and not measure:
-        raise TouchdownError("amplitude is of lines that measure injects; ask for measure, too")
+        raise TouchdownError("amplitude needs measure (--measure, measure=True)")
     found = loops_in(as_scene(scene), spins, size if measure else 0.0)
     if folder is not None:
         write_loops(found, Path(folder))

@@ -11,6 +11,7 @@ from ...fmus.recipes import bore_of, is_angled, preset
 from ...modelkit.units import is_bare
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
+from ..common.text import joined
 from ..components.component import Component, FmiType, Setting, check_value, elements, value_of
 from ..scene.plausible import Heavy, PlausibleSeat, plausibility_warnings, weight_warnings
 from ..scene.scene import INCLINATION, ComponentSpec, Scene
@@ -44,6 +45,8 @@ STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
 GRAVITY = "gravity"
 JACOBI = "jacobi"  # sequence in which all step at once, and give at the end of their own steps
 SAMPLE_TIME, TICK = "sample_time", "tick"  # of an actuator: s, 0: it does not sample; sample to come
+CLOCK, OWN = "clock", 1.0  # of a controller: whose samples it uses, and its own, each `SAMPLE_TIME`
+BASE, COURSE = "base.", "base.course.form"  # of a body: the base's motion, and its course, 0: none
 # Of an actuator: V, from a DC link; J, that it took of it; settings of one that no link feeds
 LINK_VOLTAGE, LINK_ENERGY, SUPPLY = "link_voltage", "link_energy", "supply."
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
@@ -106,6 +109,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         *_early(scene, attachments, connections),
         *clocks,
         *_fed_by_links(scene, connections),
+        *_apart(components, settings),
         *idle_settings(scene, components, attachments, settings),
     ]
     remarks += plausibility_warnings(seats)
@@ -157,6 +161,12 @@ def _check_loops(
             period = value(actuator, SAMPLE_TIME)
             if spec.sampled or period:
                 lines += _clock(scene, components[name], actuator, period, ticks)
+            own = value(name, SAMPLE_TIME)
+            if value(name, CLOCK) == OWN and 0.0 < own < period * (1.0 - STEP_MATCH):
+                lines.append(
+                    f"{name}.{SAMPLE_TIME} = {own:g} s is shorter than {actuator}.{SAMPLE_TIME} = "
+                    f"{period:g} s, and there are no samples between; set {period:g} s"
+                )
     return lines
 
 
@@ -219,6 +229,22 @@ def _fed_by_links(scene: Scene, connections: Sequence[Connection]) -> Iterator[s
                 f"{c.source} is not told what {c.target} takes, and does not run empty by it; connect "
                 f"{c.target}.{LINK_ENERGY}"
             )
+
+
+def _apart(components: Mapping[str, Component], settings: Mapping[tuple[str, str], float]) -> Iterator[str]:
+    """A line on bodies that do not stand on one base: its motion is not alike in all that know it."""
+    motions: dict[str, dict[str, float | None]] = {}
+    for name, component in components.items():
+        if COURSE in component.variables:
+            starts = {key: v.start for key, v in component.variables.items() if key.startswith(BASE)}
+            values = {key: settings.get((name, key), start) for key, start in starts.items()}
+            moves = values[COURSE] and (values.get(f"{BASE}x") or values.get(f"{BASE}y"))
+            motions[name] = values if moves else {}
+    first, *others = motions.values() or [{}]
+    if any(one != first for one in others):
+        still = [name for name, values in motions.items() if not values]
+        rest = f"; it stands still in {joined(still)}" if still else ""
+        yield f"{BASE}* is not alike in {joined(motions)}, which stand on one base{rest}; set all alike"
 
 
 def _early(

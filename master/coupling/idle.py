@@ -42,7 +42,7 @@ def idle_settings(
                 idle.setdefault(tuple(first), []).append(f"{name}.{key}")
         for terms, keys in idle.items():
             do, them = ("do", "them") if len(keys) > 1 else ("does", "it")
-            states = joined(map(looked_up.state, terms))
+            states = joined(dict.fromkeys(map(looked_up.state, terms)))
             remedies = joined(map(looked_up.remedy, terms), "or")
             yield f"{', '.join(keys)} {do} nothing while {states}; set {remedies}, or leave {them} out"
 
@@ -71,14 +71,18 @@ class _Values:
     def state(self, term: Term) -> str:
         """What is, in words: rotor.axial = 0."""
         found = zip(self._owners(term), self(term), strict=True)
-        return joined(f"{owner}.{term.name} = {value:g}" for owner, value in found)
+        return joined(
+            f"{owner}.{term.name} = {self._components[owner].variables[term.name].in_words(value)}"
+            for owner, value in found
+        )
 
     def remedy(self, term: Term) -> str:
         """What to set."""
         owner = self._owners(term)[0]
-        switch = self._components[owner].variables[term.name].maximum == 1.0
+        variable = self._components[owner].variables[term.name]
+        switch = variable.maximum == 1.0
         number = term.number if term.compare in ("==", ">=") else 1.0 if switch else None
-        return f"{owner}.{term.name}" + ("" if number is None else f" = {number:g}")
+        return f"{owner}.{term.name}" + ("" if number is None else f" = {variable.in_words(number)}")
 
     def _owners(self, term: Term) -> list[str]:
         return self._rotors if term.of_rotor else [self._name]

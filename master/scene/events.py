@@ -16,7 +16,7 @@ from ...modelkit.reader import Kind, Table, key, number
 GROUP = "event"  # a component's parameters: event[1].time, event[1].kind, ...
 KIND = "kind"
 WHICH = "coil"  # what a number behind the word means
-_WHAT = re.compile(r"\s*([\w -]+?)\s*:\s*(\w+)(?:\s+(\d+))?\s*")
+_WHAT = re.compile(r"\s*([\w -]+?)\s*:\s*(\w+)(?:\s+(\d+|all|both))?\s*")
 
 
 class _Event(NamedTuple):
@@ -25,7 +25,7 @@ class _Event(NamedTuple):
     component: str
     time: float  # s, on the simulation's clock
     kind: str  # one of the component's words
-    which: int | None = None
+    which: int | None = None  # None: all
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,11 @@ class EventTable:
 
     time: float = key(number("s", minimum=0.0), says="on the simulation's clock")
     what: tuple[str, ...] = key(
-        Kind(lambda value, name: _WHAT.fullmatch(value).groups(), 'such as "amb: coil_off 2"'),  # type: ignore
-        says="COMPONENT: WORD, and which one where there are several",
+        Kind(
+            lambda value, name: _WHAT.fullmatch(value).groups(),  # type: ignore
+            'such as "amb: coil_off 2", "amb: coil_short all" or "amb: sensor_lost both"',
+        ),
+        says="COMPONENT: WORD, and which one, all or both where there are several",
     )
 
 
@@ -43,7 +46,8 @@ def settings_at_times(tables: Iterable[Table]) -> tuple[_Event, ...]:
     """The [[event]] tables of a scene. Raises TouchdownError."""
     found = [(one.time, *one.what) for one in (table.read(EventTable) for table in tables)]
     return tuple(
-        _Event(name, time, kind, int(which) if which else None) for time, name, kind, which in found
+        _Event(name, time, kind, int(which) if which and which.isdecimal() else None)
+        for time, name, kind, which in found
     )
 
 

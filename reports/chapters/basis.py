@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import platform
+import re
 import shlex
 from dataclasses import asdict
 from functools import partial
@@ -47,6 +48,7 @@ LEFT_OUT = {  # model: what it has not, by the words of its template
     "bushing": ("planar", "rolling"),
     "landing_sleeve": ("rolling",),
 }
+LINE_ENDS = re.compile(r"(?<=[.:])[ \t]*\n|\n[ \t]*\n|\n(?=[ \t]*[-*] )")  # of prose, which may be wrapped
 TAMES = "tames rare large ball loads, above all on a soft mount"
 
 
@@ -67,7 +69,7 @@ def model(subject: Subject) -> Data:
     scene = subject.result.scene
     assumed = _to_ask_for(subject)
     return {
-        "about": " ".join(scene.about.split()),
+        "about": [" ".join(line.split()) for line in LINE_ENDS.split(scene.about.strip())],
         "parts": [[name, spec.fmu, _about(subject, spec)] for name, spec in scene.components.items()],
         "scheme": scene.run.scheme.title,
         "macro_step": quantity(scene.run.macro_step, "s"),
@@ -77,6 +79,7 @@ def model(subject: Subject) -> Data:
         "effects": [_effect(subject, variable) for variable in EFFECTS],
         "axial": _is_on(subject, "axial"),
         "thermal": _is_on(subject, "thermal"),
+        "controlled": bool(scene.control),
         "bending": _is_on(subject, "ring.harmonics"),
     }
 

@@ -22,7 +22,8 @@ def controlled_head(d: Design, levitation: Levitation) -> Iterator[str]:
     if levitation.about:
         yield from ('about = """', *levitation.about, '"""')
     pairs = ", ".join(f'["{controller(s)}", "{s.component}"]' for s in d.magnetic)
-    yield from (f'zero = "{OFF}"  # times count from here', f"control = [{pairs}]")
+    yield f'zero = "{OFF}"  # results count times from here, events from the start of the run'
+    yield f"control = [{pairs}]"
     if levitation.sensors:
         seen = zip(d.magnetic, levitation.sensors, strict=True)
         looks = ", ".join(f'["{s.component}.sensor", "rotor.{one}"]' for s, one in seen)

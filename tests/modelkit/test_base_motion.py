@@ -9,6 +9,7 @@ import pytest
 from systems import history
 
 from touchdown.bearings.supports import housing
+from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.scene import ComponentSpec, Scene
@@ -95,3 +96,16 @@ def test_a_levitated_disk_takes_a_shock_and_no_energy_is_made():
     assert np.abs(found["rotor.A.x"]).max() > 5e-5
     total = sum(found[name] for name in stored) - found["amb.supplied"]
     assert np.ptp(total) < 1e-3 * np.ptp(found["rotor.energy.potential"])  # the work of the base is in it
+
+
+def test_a_base_that_moves_under_one_body_alone_is_said():
+    shocked = {f"{body}.base.y": 60.0 for body in ("rotor", "housing")}
+    shocked |= {f"{body}.base.course.form": "pulse" for body in ("rotor", "housing")}
+    alike, told = "base.* is not alike in rotor and housing", []
+    for other in ({}, {"housing.base.y": 0.0}, {"rotor.base.x": 1.0}):
+        with opened(
+            load_scene("disk-caged-simplified").set({**shocked, **other}), in_process=True
+        ) as system:
+            told.append([line for line in system.remarks if line.startswith(alike)])
+    assert [len(lines) for lines in told] == [0, 1, 1]
+    assert "it stands still in housing;" in told[1][0]

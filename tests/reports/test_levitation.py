@@ -61,6 +61,8 @@ def test_the_chapter_says_what_became_of_rotor_controller_and_coils(caught: touc
     assert [chart.name for chart in charts] == ["controllers", "current-amb", "voltage-amb"]
     assert [len(chart.lines) for chart in charts] == [1, 4, 4]
     assert {0.0, 1.0, 2.0} >= set(charts[0].lines[0].values.tolist())
+    model = section(next(c for c in CHAPTERS if c.name == "model"), subject).html
+    assert "Forces of the process and the motor, but for" in model
     when = f"{caught.summary['seats']['A']['capture_time']:.3g} s after the command"
     assert caught.headline.startswith(f"Asked for again, the rotor is captured at A, {when}. ")
 

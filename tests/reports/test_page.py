@@ -117,6 +117,16 @@ def test_the_command_repeats_the_run(dropped: Path, page: Path) -> None:
     assert inside["components"] == json.loads((dropped / "scene.json").read_text())["components"]
 
 
+def test_lines_of_a_scene_s_about_stay_and_wrapped_prose_does_not(dropped: Path) -> None:
+    subject = Subject(touchdown.open_result(dropped))
+    about = "By rules.\nA: 2 A\nof 4 A.\n- one\n- two\n"
+    scene = replace(subject.result.scene, about=about)
+    told = model(replace(subject, result=replace(subject.result, scene=scene)))
+    assert told["about"] == ["By rules.", "A: 2 A of 4 A.", "- one", "- two"]
+    assert "By rules.<br>A: 2 A of 4 A.<br>" in rendered("chapters/model.html", told)
+    assert "magnetic bearings after the shutdown" in rendered("chapters/model.html", told)
+
+
 @pytest.mark.slow
 def test_the_sweep_over_what_is_assumed_runs(dropped: Path, tmp_path: Path) -> None:
     """As the page prints it: drag and damping of the balls, each none and some."""

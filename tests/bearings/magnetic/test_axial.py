@@ -165,7 +165,7 @@ def test_a_failed_coil_and_a_lost_sensor_are_those_of_the_one_axis():
     assert axis["sensed"] == 0.0
     other = Instance(amb_axial.MODEL)
     other.record["p"]["event"][0]["kind"], other.record["p"]["event"][0]["coil"] = SENSOR_LOST, 2
-    with pytest.raises(ModelError, match=r"event\[1\].coil = 2 is of a sensor; an axis has one: 1 to 1"):
+    with pytest.raises(ModelError, match=r"event\[1\].coil = 2: sensors are numbered 1 to 1 by"):
         other.start(0.0)
 
 

@@ -347,5 +347,5 @@ def test_a_sensor_s_signal_gets_stuck_or_lost_at_the_next_sample():
     assert (first[6:] == 0.0).all()
     assert (second[6:9] == 0.0).all()
     assert len({*second[:6], *second[9:]}) == 8
-    with pytest.raises(ModelError, match=r"event\[2\].coil = 3 is of a sensor; an axis has one: 1 to 2,"):
+    with pytest.raises(ModelError, match=r"event\[2\].coil = 3: sensors are numbered 1 to 2 by"):
         with_events((0.0, COIL_OFF, 3), (0.0, SENSOR_LOST, 3)).start(0.0)

@@ -67,6 +67,9 @@ TABLES = {  # what stands before the words of each line, and lines: words => wha
         --set rotor.mass=1 => --set does not go with --of stability
         --cases bounces => there is no case bounces; did you mean bounce
     """,
+    "amb-margins disk-caged-relevitated": """
+        --amplitude "1 um" => amplitude needs measure (--measure, measure=True)
+    """,
     "rotor": """
         disk-caged-simplified => is the FMU rigid_rotor; this needs a rotor of beam elements
         rotor1-9000 --support "A=1 MN/m" => --support is for rotors; rotor1-9000 is a scene

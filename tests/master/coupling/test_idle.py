@@ -43,15 +43,16 @@ def test_a_setting_that_does_nothing_is_said(scene: Scene, name: str) -> None:
 
 def test_it_says_what_to_set() -> None:
     assert idle(DISK.set({"rotor.axial_load": 5.0, "rotor.z": 1e-4})) == [
-        "rotor.axial_load, rotor.z do nothing while rotor.axial = 0; set rotor.axial = 1, or leave them out"
+        "rotor.axial_load, rotor.z do nothing while rotor.axial = off; set rotor.axial = on, or leave them "
+        "out"
     ]
     assert idle(DISK.set({"bearing.contact.tilt": 1e-3})) == [
-        "bearing.contact.tilt does nothing while bearing.contact.law = 0; set bearing.contact.law = 1, or "
-        "leave it out"
+        "bearing.contact.tilt does nothing while bearing.contact.law = power; set bearing.contact.law = "
+        "line, or leave it out"
     ]
     assert idle(IN_SPACE.set({"bearing.row_distance": 0.01})) == [
-        "bearing.row_distance does nothing while bearing.arrangement = 0; set bearing.arrangement, or "
-        "leave it out"
+        "bearing.row_distance does nothing while bearing.arrangement = single; set bearing.arrangement, "
+        "or leave it out"
     ]
 
 

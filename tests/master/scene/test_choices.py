@@ -13,7 +13,9 @@ from touchdown.master.components.component import Component
 from touchdown.master.components.description import interface
 from touchdown.master.components.loading import Stepping, load_component
 from touchdown.master.coupling.assembly import checked_value
+from touchdown.master.scene.events import settings_at_times, settings_of
 from touchdown.modelkit.kernel.cache_folder import user_cache
+from touchdown.modelkit.reader import Table
 
 
 @pytest.fixture(scope="module")
@@ -74,3 +76,16 @@ def test_a_name_that_is_begun_is_answered_by_those_it_begins() -> None:
     known = ("friction.dynamic", "friction.static", "fraction", "mass")
     assert one_of("frict", known) == "did you mean friction.dynamic or friction.static"
     assert one_of("masss", known) == "did you mean mass"
+
+
+@pytest.mark.parametrize(
+    ("what", "settings"),
+    [
+        ("amb: coil_short all", {"kind": "coil_short"}),
+        ("amb: sensor_lost both", {"kind": "sensor_lost"}),
+        ("amb: coil_off 2", {"kind": "coil_off", "coil": 2}),
+    ],
+)
+def test_events_of_one_or_all(what: str, settings: dict[str, object]):
+    event = settings_of(settings_at_times([Table("event: ", {"time": "5 ms", "what": what})]), "amb")
+    assert event == {"event[1].time": 5e-3} | {f"event[1].{key}": value for key, value in settings.items()}

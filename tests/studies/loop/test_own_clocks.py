@@ -14,6 +14,7 @@ from systems import history
 import touchdown
 from touchdown.command.verbs.scenes import chosen_scene
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.studies.loop.linear_loops import Sampled, loops_of
@@ -126,3 +127,10 @@ def test_other_ratios_are_refused(period: float) -> None:
 def test_a_loop_of_two_clocks_is_not_measured() -> None:
     with pytest.raises(TouchdownError, match=r"controllers sample every 0\.0002 s by their clocks"):
         touchdown.amb_margins(scene(2), measure=True)
+
+
+@pytest.mark.parametrize(("period", "said"), [(0.5 * PERIOD, 1), (PERIOD, 0), (2.0 * PERIOD, 0)])
+def test_a_clock_faster_than_the_samples_is_said(period: float, said: int) -> None:
+    with opened(scene(1, **{"controller.sample_time": period}), in_process=True) as system:
+        shorter = [line for line in system.remarks if "is shorter than amb.sample_time" in line]
+    assert len(shorter) == said
