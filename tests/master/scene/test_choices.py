@@ -68,7 +68,7 @@ def test_what_can_be_set_is_listed_in_units_that_people_use(capsys: pytest.Captu
     assert shown["bearing.clearance"][1:5] == ["300", "um", "from", "0"]
     assert shown["bearing.interface.order"][1:3] == ["model", "motion"]
     assert shown["rotor.speed"][1:3] == ["9000", "rpm"]
-    assert shown["amb.bandwidth"][1:3] == ["0", "rad/s"]
+    assert shown["amb.bandwidth"][1:3] == ["0", "Hz"]
 
 
 def test_a_name_that_is_begun_is_answered_by_those_it_begins() -> None:
