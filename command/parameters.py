@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from ..master.common.errors import TouchdownError, as_list
+from ..master.common.text import RPM
 from ..master.common.units import to_si
+from ..modelkit.units import is_bare
 
 PathLike = str | os.PathLike[str]
 Count = int  # above 0
@@ -75,7 +77,7 @@ def read(kind: str, entered: Any, option: str) -> Any:
         "Names": _names,
         "Counts": lambda text, _: text.split(","),
         "Times": lambda text, name: sorted({above_zero(one, "s", name) for one in _listed(text, name)}),
-        "Spins": lambda text, name: [to_si(one, "rad/s", name) for one in _listed(text, name)],
+        "Spins": _spins,
         "Settings": lambda texts, name: dict(assignment(text, name, empty=True) for text in texts),
         "Places": _places,
         "PathLike": lambda text, _: Path(text),
@@ -122,6 +124,24 @@ def _names(text: str, option: str) -> list[str]:
 def parted(names: Names) -> list[str]:
     """The names that a function got: several, one, or a text with commas between them."""
     return [one.strip() for name in as_list(names) for one in name.split(",") if one.strip()]
+
+
+def bare_speeds(speeds: Iterable[Any]) -> list[str]:
+    """What is to be said of speeds that are texts without a unit, a line each."""
+    bare = (one for one in speeds if isinstance(one, str) and is_bare(one) and float(one))
+    return [
+        f"speed {one} has no unit: it is taken for rad/s, {RPM * float(one):.0f} rpm; "
+        f'write "{one} rpm" where that is meant'
+        for one in bare
+    ]
+
+
+def _spins(text: str, option: str) -> list[str]:
+    """Speeds with commas between them, as text. Raises TouchdownError."""
+    found = list(_listed(text, option))
+    for one in found:
+        to_si(one, "rad/s", option)
+    return found
 
 
 def _listed(text: str, option: str) -> Iterable[str]:

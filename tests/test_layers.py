@@ -46,9 +46,9 @@ BUDGETS = {  # lines of a package at most, with room for one feature. A commit t
     "modelkit": 4380,
     "fmus": 3450,
     "master": 21190,
-    "studies": 14100,
+    "studies": 14120,
     "reports": 6445,
-    "command": 3610,
+    "command": 3625,
     "validation": 4400,
 }
 MODELS = "modules that define a MODEL"

@@ -23,6 +23,7 @@ from ..parameters import (
     Speed,
     Spin,
     Texts,
+    bare_speeds,
     parted,
 )
 from .run import load, open_result
@@ -104,9 +105,7 @@ def new(
     >>> scene.components["bearing_A"].preset
     '7014'
     """
-    from ...master.common.text import display_value
     from ...master.common.units import to_si
-    from ...modelkit.units import is_bare
     from ...studies.machine.new import UNITS, Wanted, machine, write
 
     quantities = {"speed": speed, "clearance": clearance, "mass": mass, "inertia": inertia}
@@ -125,11 +124,7 @@ def new(
     )
     path = Path(os.fspath(folder))
     built = machine(request, path.absolute().name)
-    if isinstance(speed, str) and is_bare(speed):
-        turns, unit = display_value("speed", float(speed))
-        meant = f'it is taken for rad/s, {turns:.0f} {unit}; write "{speed} rpm" where that is meant'
-        warnings.warn(f"speed {speed} has no unit: {meant}", stacklevel=2)
-    for note in built.notes:
+    for note in [*bare_speeds([speed]), *built.notes]:
         warnings.warn(note, stacklevel=2)
     return load(write(built, path, force))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import tempfile
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -28,6 +29,7 @@ from ..parameters import (
     Time,
     Times,
     assignment,
+    bare_speeds,
     parted,
 )
 from .run import as_scene
@@ -355,7 +357,10 @@ def amb_margins(
     from ...studies.loop.over_speed import loops_in
     from ...studies.loop.pictures import write_loops
 
-    spins = [to_si(speed, "rad/s", "speeds") for speed in as_list(speeds)]
+    asked = as_list(speeds)
+    spins = [to_si(speed, "rad/s", "speeds") for speed in asked]
+    for note in bare_speeds(asked):
+        warnings.warn(note, stacklevel=2)
     size = AMPLITUDE if amplitude is None else to_si(amplitude, "m", "amplitude")
     if size <= 0.0:
         raise TouchdownError(f"amplitude = {amplitude} must be above 0 m")

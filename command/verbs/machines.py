@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from ...master.common.errors import TouchdownError, one_of
+from ...master.common.errors import FAILED, TouchdownError, one_of
 from ...master.common.text import aligned, variable_unit
 from ...modelkit.units import display_unit, per_display
 from ..api import machines
@@ -33,12 +33,13 @@ if TYPE_CHECKING:
 
 
 def show_new(scene: Scene, folder: Path, notes: list[str]) -> int:
-    """Print what is to be known of a new machine, and how to go on."""
+    """Print what is to be known of a new machine, and how to go on; FAILED where its loops are no good."""
     from ...master.scene.file import SCENE_FILE
+    from ...studies.machine.levitated import UNFIT
 
     end = f"{folder / SCENE_FILE}: now run it with\n  touchdown run {folder}"
     print("\n".join([*filter(None, [scene.about.strip()]), *(f"note: {note}" for note in notes), end]))
-    return 0
+    return FAILED if UNFIT in notes else 0
 
 
 def show_scenes(

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag, eigvals, expm, matrix_balance
+from scipy.optimize import linear_sum_assignment
 
 from ...bearings.magnetic.law_file import UP_TO
 from ...bearings.magnetic.linear import SIGNAL, LinearActuator, LinearLaw
@@ -45,6 +46,7 @@ CLOSEST = 0.05  # distance of two lines over that to the nearest root, at least
 NARROWEST = 1e-9  # distance of the nearest line to a root, over its frequency
 BATCH = 128  # lines at once
 TINY = 1e-9  # of a discrete eigenvalue
+LASTING = 0.5  # of a mode's amplitude, left after a period: those above swing on between samples
 ROUNDING = 1e-9  # of a pole's size, what its parts err by
 SLOW = 1e3  # 1/s; a pole nearer to 0 errs by as much as one of this size
 
@@ -146,6 +148,10 @@ class Loops(ABC):
     @abstractmethod
     def closed(self, speed: float) -> ClosedLoops:
         """At a speed (rad/s)."""
+
+    def shown(self, speed: float, closed: ClosedLoops) -> np.ndarray:
+        """Poles (1/s) of the loops closed at a speed (rad/s) that have the frequency of what swings."""
+        return closed.poles
 
     @abstractmethod
     def swing(self, speed: float, omega: float, force: np.ndarray) -> np.ndarray:
@@ -290,6 +296,18 @@ class Sampled(Loops):
         elif soon is not None:
             closed[:n, n + k + m : n + k + 2 * m] = soon
         return ClosedLoops(closed + into @ seen, into, seen, self.period)
+
+    def shown(self, speed: float, closed: ClosedLoops) -> np.ndarray:
+        """As of all `Loops`: samples show modes above half their frequency as slow ones, left out here.
+
+        The loops hardly move such a mode: its pole is the one nearest to the plant's. One that grows stays.
+        """
+        free = np.linalg.eigvals(self._plant(speed)[0])
+        fast = np.exp(self.period * free[np.abs(free.imag) > math.pi / self.period])
+        fast = fast[np.abs(fast) > LASTING]
+        apart = np.abs(fast[:, None] - np.exp(self.period * closed.poles))
+        nearest = linear_sum_assignment(apart)[1]
+        return np.delete(closed.poles, [k for k in nearest if growing(closed.poles[k : k + 1]) is None])
 
     def swing(self, speed: float, omega: float, force: np.ndarray) -> np.ndarray:
         """As of all `Loops`, at the ticks."""

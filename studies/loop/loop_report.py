@@ -62,7 +62,8 @@ def lines(found: Found) -> Iterator[str]:
         modes = [(f"{HZ * mode.free.imag:.4g}", *_swing(mode.pole)) for mode in nominal.bending]
         yield from aligned([("free Hz", "Hz", "damping ratio"), *modes], ">", "  ")
     yield f"\nleast damped poles at {RPM * nominal.speed:g} rpm:"
-    yield from aligned([("real 1/s", "Hz", "damping ratio"), *_poles(nominal.poles)], ">", "  ")
+    yield from aligned([("real 1/s", "Hz", "damping ratio"), *_poles(nominal.shown)], ">", "  ")
+    yield from (f"  {one}" for one in filter(None, [found.left_out]))
 
 
 def _measured(found: Measured, speed: float) -> Iterator[str]:
@@ -86,7 +87,7 @@ def _measured(found: Measured, speed: float) -> Iterator[str]:
 
 def _worst(at_speed: AtSpeed) -> tuple[str, ...]:
     """At a speed: the worst loop's peak and zone, and the least damped pole."""
-    peak, pole = max((one.peak for one in at_speed.margins), default=math.nan), at_speed.poles[0]
+    peak, pole = max((one.peak for one in at_speed.margins), default=math.nan), at_speed.shown[0]
     judged = (f"{peak:.4f}", zone(peak)) if at_speed.margins else (_useless(at_speed), "")
     return f"{RPM * at_speed.speed:.0f}", *judged, f"{damping_ratio(pole):.4f}", f"{HZ * pole.imag:.4g}"
 

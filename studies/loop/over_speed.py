@@ -20,7 +20,6 @@ from ...master.scene.requirements import SENSITIVITY
 from ...master.scene.scene import Scene
 from .linear_loops import (
     ROUNDING,
-    ClosedLoops,
     Loops,
     Sampled,
     Unbalance,
@@ -59,6 +58,7 @@ class AtSpeed:
     margins: tuple[Margins, ...]  # by axis; none of loops that do not levitate the rotor
     poles: np.ndarray  # 1/s, of a pair the upper one, the least damped first; none that samples cannot show
     bending: tuple[_Bending, ...]
+    shown: np.ndarray  # `poles` without modes that samples show as slower ones
 
     @property
     def unstable(self) -> complex | None:
@@ -89,6 +89,14 @@ class Found:
     def own(self) -> AtSpeed:
         """At the scene's speed."""
         return min(self.speeds, key=lambda one: abs(one.speed - self.loops.speed))
+
+    @property
+    def left_out(self) -> str:
+        """What is to be said of poles that are not shown; "": all are."""
+        if not isinstance(self.loops, Sampled) or len(self.own.shown) == len(self.own.poles):
+            return ""
+        half = f"{0.5 / self.loops.period:.4g} Hz"
+        return f"modes above half the sampling frequency, {half}, are not shown unless they grow"
 
     @property
     def faults(self) -> list[str]:
@@ -151,7 +159,7 @@ class Found:
         """Over the speed (rad/s): the worst loop's largest |S| (nan: unstable), the least damped pole."""
         import pandas
 
-        poles = [result.poles[0] for result in self.speeds]
+        poles = [result.shown[0] for result in self.speeds]
         columns = {
             "max_S": [
                 max((one.peak for one in result.margins), default=math.nan) for result in self.speeds
@@ -187,17 +195,18 @@ def _at(loops: Loops, speed: float) -> AtSpeed:
     closed = loops.closed(speed).balanced()
     omega = closed.lines(loops.highest)
     values = np.diagonal(closed.sensitivity(omega), axis1=1, axis2=2)
-    poles = _poles(loops, closed)
-    result = AtSpeed(speed, omega, values, (), poles, tuple(_bending(loops, speed, closed.poles)))
+    poles, shown = _poles(loops, closed.poles), loops.shown(speed, closed)
+    bending = tuple(_bending(loops, speed, shown))
+    result = AtSpeed(speed, omega, values, (), poles, bending, _poles(loops, shown))
     if result.unstable is not None or loops.too_weak:
         return result
     found = (margins(closed.one(axis), omega, values[:, axis]) for axis in range(len(loops.names)))
     return replace(result, margins=tuple(found))
 
 
-def _poles(loops: Loops, closed: ClosedLoops) -> np.ndarray:
-    """As `AtSpeed.poles`."""
-    upper = (p for p in map(complex, closed.poles) if p.imag >= -ROUNDING * abs(p))
+def _poles(loops: Loops, poles: np.ndarray) -> np.ndarray:
+    """Of these, as `AtSpeed.poles`."""
+    upper = (p for p in map(complex, poles) if p.imag >= -ROUNDING * abs(p))
     return np.array(
         sorted((p for p in upper if p.imag <= loops.highest or p.real > 0.0), key=damping_ratio)
     )
@@ -227,7 +236,7 @@ def limit_warnings(scene: Scene) -> list[str]:
         if laws is None:
             return list(shortfalls(bearings, None))
         loops = Sampled(scene)
-        poles = _poles(loops, loops.closed(loops.speed).balanced())
+        poles = _poles(loops, loops.closed(loops.speed).balanced().poles)
         grows = growing(poles)
         unstable = [] if grows is None else [_instability(loops.speed, grows)]
         return [*laws.remarks, *unstable, *shortfalls(bearings, settled(loops, loops.speed, poles))]

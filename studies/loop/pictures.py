@@ -138,7 +138,8 @@ def _campbell(figure: Figure, found: Found) -> None:
     top = HZ * max(3.0 * highest, 2.0 * math.pi * 100.0, *(1.15 * free for free in bending))
     dots = list[tuple[float, float, float]]()
     for speed in np.linspace(0.0, highest, SPEEDS):
-        poles = found.loops.closed(math.copysign(speed, found.loops.speed)).poles
+        signed = math.copysign(speed, found.loops.speed)
+        poles = found.loops.shown(signed, found.loops.closed(signed))
         upper = (pole for pole in map(complex, poles) if 0.0 < HZ * pole.imag < top)
         dots += [(RPM * speed, HZ * pole.imag, damping_ratio(pole)) for pole in upper]
     x, y, damping = np.array(dots).reshape(-1, 3).T
@@ -150,7 +151,8 @@ def _campbell(figure: Figure, found: Found) -> None:
     axes.set_ylim(0.0, top)
     figure.colorbar(drawn, ax=axes, label="damping ratio [1]")
     axes.legend(fontsize=7, loc="upper left")
-    _label(axes, "speed [rpm]", "frequency [Hz]", f"{found.scene.title}: poles of the closed loops")
+    _label(axes, "speed [rpm]", "frequency [Hz]",
+           f"{found.scene.title}: poles of the closed loops\n{found.left_out}".rstrip())  # fmt: skip
 
 
 PANELS = {  # of a Bode plot

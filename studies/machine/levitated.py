@@ -25,6 +25,10 @@ from .scene_text import scene_text
 PERIODS = (100e-6, 50e-6, 25e-6)  # s, from sample to sample, of which the first with zone A is taken
 MORE = 1.5  # of the reserve, where bias, load and unbalance take too much
 ENLARGED = 4  # times at most
+UNFIT = (
+    "--controller: a loop is unstable or leaves zone A up to the speed (exit status 2); the files are "
+    "written, to go on from"
+)
 BESIDE = 0.1  # of a bending mode's frequency: a peak nearer to it is the mode's
 
 
@@ -59,6 +63,8 @@ def levitated(design: Design, files: Mapping[str, str], shaft: Shaft | None) -> 
                 break
             magnets = replace(magnets, reserve=MORE * magnets.reserve)
     notes = [*lacking, *_faults(found)]
+    if _worst(found)[0] >= ZONES[0][0]:
+        notes.append(UNFIT)
     if design.axial:
         notes.append("--controller: until its shoulder lands nothing holds the rotor along its shaft")
     return replace(design, levitation=replace(levitation, about=tuple(_about(found)))), notes
@@ -141,7 +147,8 @@ def _about(found: Found) -> Iterator[str]:
     for k, name in enumerate(loops.names):
         one = loops.bearings[k // 2].axes[k % 2]
         control, fluxes = swings.of(k) if swings else (0.0, [])
+        swung = f"{control:.2g} A" if swings else "an unknown current (nothing settles)"
         yield (
             f"{name}: {one.amplifier.bias:g} A bias, {abs(one.hold):.2g} A for the load, "
-            f"{control:.2g} A for the unbalance, of {CURRENT:g} A; {one.density(fluxes):.2g} of {FLUX:g} T."
+            f"{swung} for the unbalance, of {CURRENT:g} A; {one.density(fluxes):.2g} of {FLUX:g} T."
         )

@@ -43,6 +43,7 @@ from touchdown.studies.loop.linear_loops import (
     loops_of,
     measured_laws,
 )
+from touchdown.studies.loop.loop_report import lines
 from touchdown.studies.loop.over_speed import damping_ratio, limit_warnings, loops_in
 
 DISK = "disk-caged-relevitated"
@@ -229,6 +230,18 @@ def test_the_command(told: Callable[..., tuple[int, str]]):
     assert "amb.axis[1] 2 0.4436 0 2.444 6 0.5118 1.2" in rows
 
 
+def test_speeds_without_a_unit_are_said_to_be_in_rad_per_second(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    """But for 0; numbers in Python are in SI."""
+    said = "speed 900 has no unit: it is taken for rad/s, 8594 rpm"
+    with pytest.warns(UserWarning, match=said) as noted:
+        touchdown.amb_margins(DISK, speeds=["0", "900", "9000 rpm", 5.0])
+    assert len(noted) == 1
+    assert main(["amb-margins", DISK, "--speeds", "900", "-o", str(tmp_path)]) == 0
+    assert said in capsys.readouterr().err
+
+
 def test_an_unstable_loop_has_no_zone_and_no_margin(told: Callable[..., tuple[int, str]]):
     """A derivative gain of the wrong sign; the verdict comes first, and in the exit status."""
     status, text = told(
@@ -291,6 +304,27 @@ def test_bending_modes_have_poles_of_their_own():
     for mode in own.bending:
         assert abs(mode.pole - mode.free) < 0.005 * abs(mode.free)
     assert damping_ratio(own.poles[0]) == min(damping_ratio(mode.pole) for mode in own.bending)
+
+
+def test_modes_above_half_the_sampling_frequency_are_not_shown_as_slow_ones():
+    """Rotor I bends at 7863, 7933, 12535 and 12611 Hz; samples every 100 us show that from 2067 Hz to 2611.
+
+    All poles are there, and judged; shown are the six modes below 5 kHz and what is well damped.
+    """
+    found = loops_in(load_scene("rotor1-relevitated"), [0.0])
+    own, rate = found.own, 1.0 / PERIOD
+    free = found.loops.rotor.bending(own.speed, math.inf) / (2.0 * math.pi)
+    fast = free[free.imag > 0.5 * rate]
+    looks = np.abs(fast.imag - rate * np.round(fast.imag / rate))
+    assert sorted(looks) == pytest.approx([2067, 2137, 2535, 2611], abs=1.0)
+
+    def light(poles: np.ndarray) -> list[float]:
+        return sorted(p.imag / (2.0 * math.pi) for p in poles if 0.0 < damping_ratio(p) < 0.05)
+
+    bending = [mode.pole.imag / (2.0 * math.pi) for mode in own.bending]
+    assert light(own.shown) == pytest.approx(bending)
+    assert light(own.poles) == pytest.approx(sorted([*bending, *looks]), abs=0.1)
+    assert "half the sampling frequency, 5000 Hz, are not shown" in "\n".join(lines(found))
 
 
 def test_names_of_a_file_go_to_all_components_that_match(tmp_path: Path):

@@ -114,11 +114,14 @@ def test_the_written_machine_drops_and_is_levitated_again(
 def test_why_a_loop_is_not_in_zone_a_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A controller that is asked too seldom."""
+    """A controller that is asked too seldom; the files are there, the exit status says it, too."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(levitated, "PERIODS", (3e-3,))
-    assert main(["new", "mine", "--mass", "1.65 kg", "--bearings", "6004", "--controller"]) == 0
+    assert main(["new", "mine", "--mass", "1.65 kg", "--bearings", "6004", "--controller"]) == FAILED
     said = capsys.readouterr().out
+    assert f"note: {levitated.UNFIT}\n" in said
+    found = touchdown.amb_margins("mine")
+    assert ("unknown current (nothing settles) for the unbalance" in said) == (not found.own.margins)
     assert "note: --controller: amb.axis[1] is in zone" in said or "note: --controller: unstable at" in said
     assert "sample_time" in said
 
