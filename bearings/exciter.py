@@ -48,6 +48,7 @@ class Outputs:
 
     journal: PlanarSeatReaction = group(PlanarSeatReaction)
     housing: PlanarMountReaction = group(PlanarMountReaction)
+    supplied: float = real(0.0, "J", "work on rotor and housing since the start", local=True)
     given_x: float = real(0.0, "N.s", "impulse on the rotor since the start", local=True)
     given_y: float = real(0.0, "N.s", "impulse on the rotor since the start, upwards", local=True)
 
@@ -91,10 +92,11 @@ def rhs(t, q, dq, m):
 
 @kernel
 def report(q, m):
-    """Impulse given up to the end of the macro step."""
+    """Impulse and work given up to the end of the macro step."""
     x, y = sizes(m.p)
     given = course_integral(m.time + 2.0 * m.half - m.p.course.begin, m.p.course)
     m.o.given_x, m.o.given_y = x * given, y * given
+    m.o.supplied = m.o.journal.work + m.o.housing.work
 
 
 @kernel

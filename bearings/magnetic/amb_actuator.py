@@ -89,7 +89,12 @@ class AxisState(law.AxisMeasurement):
 class _LimitTimes:
     """For how long something was at its limit since the start."""
 
-    current_time: float = real(0.0, "s", "time in the current limit: a set point was cut", local=True)
+    current_time: float = real(
+        0.0,
+        "s",
+        "time in the current limit: a set point was cut, or a stuck amplifier gave more",
+        local=True,
+    )
     voltage_time: float = real(
         0.0, "s", "time in the voltage limit: an amplifier of an enabled axis gave all voltage", local=True
     )
@@ -105,7 +110,9 @@ class Outputs(magnet.Factors):
     tick: float = real(0.0, "1", "number of the sample to come: t / sample_time")
     period: float = real(0.0, "s", "from sample to sample; 0: none are taken", constant=True)
     link: float = real(0.0, "V", "voltage of the DC link", local=True)
-    supplied: float = real(0.0, "J", "work of the magnets on the rotor since the start", local=True)
+    supplied: float = real(
+        0.0, "J", "work of the magnets and of `inject.force` since the start", local=True
+    )
     link_energy: float = real(0.0, "J", "that the coils took of the DC link since the start")
     eddy_loss: float = real(0.0, "J", "heat of the eddy currents since the start", local=True)
     peak_current: float = real(0.0, "A", "largest of any coil since the start", local=True)
@@ -154,7 +161,8 @@ def coil_state(coil, q, gap, volt, m):
         return _with_eddies(coil, i, q, volt, m)
     axis, p = m.s.axis[coil // 2], m.p.amplifier
     if m.s.coil[coil].fault != NOTHING:
-        return amplifier.failed_voltage(m.s.coil[coil].fault, flux, volt), i, 0.0, False, False
+        volt = amplifier.failed_voltage(m.s.coil[coil].fault, flux, volt)
+        return volt, i, 0.0, i > p.current_limit, False
     target, cut = 0.0, False
     if axis.enable > 0.5:
         target, cut = amplifier.set_point(coil, axis.set, p)
@@ -186,7 +194,8 @@ def _with_eddies(coil, settled, q, volt, m):
     elif -volt <= v <= volt:
         return v, i, (target - i if fault == NOTHING else 0.0), cut, False
     v = limited(v, volt)
-    return v, (held + direct * v) / (1.0 + direct * p.resistance), 0.0, cut, on
+    i = (held + direct * v) / (1.0 + direct * p.resistance)
+    return v, i, 0.0, cut or (i > p.current_limit and not on), on
 
 
 @kernel
@@ -244,6 +253,7 @@ def react(t, q, dq, m):
     f1 = m.p.inject.force * injected(m.time + t, 0, m.p.inject)
     f2 = m.p.inject.force * injected(m.time + t, 1, m.p.inject)
     outside_x, outside_y = m.d.cosine * f1 - m.d.sine * f2, m.d.sine * f1 + m.d.cosine * f2
+    dq[SUPPLIED] += outside_x * q[seat.JVX] + outside_y * q[seat.JVY]
     return Load(fx + outside_x, fy + outside_y, 0.0, -fx, -fy)
 
 

@@ -100,6 +100,7 @@ def react(t, q, dq, m):
     outside = 0.0
     if m.p.inject.force != 0.0 and m.time + m.s.done >= m.p.inject.begin - ROUNDING:
         outside = m.p.inject.force * injected(m.time + t, 0, m.p.inject)
+        dq[SUPPLIED] += outside * q[space.JVZ]
     return SpatialLoad(0.0, 0.0, 0.0, 0.0, 0.0, force + outside, 0.0 - force, 0.0, 0.0)
 
 

@@ -55,7 +55,8 @@ def test_a_rotor_takes_the_impulse_to_rounding(settings: dict[str, object], impu
 def test_a_pulse_moves_the_rotor_as_from_its_middle():
     """J (t - begin - width/2)/m; to the tolerance of micro-steps."""
     course = {"course.begin": BEGIN, "course.width": 7.3e-4, "impulse_y": 0.5}
-    _, found, _ = history(hit(course, FREE, 5e-3), ["rotor.A.y"])
+    _, found, _ = history(hit(course, FREE, 5e-3), ["rotor.A.y", "exciter.supplied"])
+    assert found["exciter.supplied"][-1] == pytest.approx(0.5**2 / (2.0 * DISK), rel=1e-6)  # J^2/(2 m)
     way = 0.5 * (5e-3 - BEGIN - 0.5 * 7.3e-4) / DISK
     assert found["rotor.A.y"][-1] == pytest.approx(way, rel=1e-8)
 
