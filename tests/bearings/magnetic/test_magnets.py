@@ -330,6 +330,11 @@ def test_a_stuck_amplifier_drives_its_coil_to_voltage_over_resistance():
     assert i[[0, 1, 3]] == pytest.approx([lev.BIAS] * 3, rel=1e-6)
     assert one.record["o"]["axis"][1]["voltage_plus"] == lev.VOLTAGE
     assert one.record["o"]["limits"]["voltage_time"] == 0.0  # no control asks for it
+    limit = float(one.record["p"]["amplifier"]["current_limit"])
+    over = 0.25e-3 + lev.L0 / lev.RESISTANCE * math.log((end - lev.BIAS) / (end - limit))
+    assert one.record["o"]["limits"]["current_time"] == pytest.approx(
+        60e-3 - over, abs=1e-4
+    )  # of a micro-step
 
 
 def test_a_sensor_s_signal_gets_stuck_or_lost_at_the_next_sample():
