@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .excitation import ORDER_PROBLEM, Course, course
+from .excitation import ORDER_PROBLEM, Course, course, course_integral
 from .kernel import kernel
 from .variables import group, real
 
@@ -32,7 +32,33 @@ def moving(p):
 
 
 @kernel
-def base_acceleration(time, p):
-    """(m/s2, m/s2) at `time` (s); p: `BaseMotion`."""
-    share = course(time - p.course.begin, p.course)
+def base_acceleration(m, since_middle):
+    """(m/s2, m/s2) `since_middle` (s) after the middle of the macro step, of a body's memory m.
+
+    Straight over the step, with its exact mean, so that no impulse is lost, however short.
+    """
+    p, step = m.p.base, 2.0 * m.half
+    since = m.time - p.course.begin
+    if step == 0.0:
+        share = course(since + since_middle, p.course)
+    else:
+        share = (course_integral(since + step, p.course) - course_integral(since, p.course)) / step
+        share += since_middle * (course(since + step, p.course) - course(since, p.course)) / step
+    return share * p.x, share * p.y
+
+
+@kernel
+def base_jerk(m):
+    """Rate (m/s3, m/s3) of `base_acceleration` over the macro step."""
+    p, step = m.p.base, 2.0 * m.half
+    since = m.time - p.course.begin
+    rate = (course(since + step, p.course) - course(since, p.course)) / step
+    return rate * p.x, rate * p.y
+
+
+@kernel
+def base_after(m):
+    """(m/s2, m/s2) at the end of the macro step."""
+    p = m.p.base
+    share = course(m.time + 2.0 * m.half - p.course.begin, p.course)
     return share * p.x, share * p.y

@@ -25,7 +25,7 @@ import math
 from dataclasses import dataclass
 
 from ..modelkit import body
-from ..modelkit.base_motion import BASE_PROBLEM, BaseMotion, base_acceleration, moving
+from ..modelkit.base_motion import BASE_PROBLEM, BaseMotion, base_acceleration, base_after, moving
 from ..modelkit.excitation import course_problem
 from ..modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ..modelkit.kernel import kernel
@@ -159,7 +159,7 @@ def rhs(t, q, dq, m):
     dq[VZ] = _axial_acceleration(az + bz + push, p)
     dq[WORK_OUTSIDE] = push * q[VZ]
     if moving(p.base):
-        base_x, base_y = base_acceleration(m.time + t, p.base)
+        base_x, base_y = base_acceleration(m, t - m.half)
         dq[VX], dq[VY] = dvx - base_x, dvy - base_y
         vx, vy = _centre_velocity(q, p)
         dq[WORK_OUTSIDE] -= p.mass * (base_x * vx + base_y * vy)
@@ -259,7 +259,7 @@ def _publish(q, m):
         _publish_tilt(q, p, m.o.A, p.bearing_position, m.u.amb, p.amb_position, m.half)
         _publish_tilt(q, p, m.o.amb, p.amb_position, m.u.A, p.bearing_position, m.half)
     if moving(p.base):
-        base_x, base_y = base_acceleration(end, p.base)
+        base_x, base_y = base_after(m)
         m.o.A.ax_free, m.o.A.ay_free = m.o.A.ax_free - base_x, m.o.A.ay_free - base_y
         m.o.amb.ax_free, m.o.amb.ay_free = m.o.amb.ax_free - base_x, m.o.amb.ay_free - base_y
     m.o.A.work = q[WORK_A]

@@ -28,7 +28,7 @@ from .law import ROUNDING
 ACTUATORS, EVENTS = 4, 4
 NEVER = -1.0  # s
 KINDS = Choices("LinkEvent", ("none", "off", "on"), ("nothing", "the mains fail", "the mains are back"))
-OFF = 1
+OFF, ON = 1, 2
 PROBLEMS = (
     "least = {0:g} V, mains = {1:g} V and ceiling = {2:g} V; the mains' voltage must be above least, and "
     "not above ceiling",
@@ -91,6 +91,7 @@ class Outputs:
     capacitor: float = real(0.0, "V", "voltage of the capacitor", local=True)
     locked: int = integer(0, "the link is locked out", local=True)
     failed_time: float = real(NEVER, "s", "when the mains last failed; below zero: never", local=True)
+    back_time: float = real(NEVER, "s", "when they were back after that; below zero: never", local=True)
     locked_time: float = real(NEVER, "s", "when the link last locked out; below zero: never", local=True)
     energy: _Energies = group(_Energies)
 
@@ -124,11 +125,14 @@ def _taken(u):
 @kernel
 def _failed_at(time, p):
     """When (s) the mains failed that are off at `time` (s), `NEVER`: they are on."""
-    kind, since = 0, NEVER
+    back, failed = NEVER, NEVER
     for event in p.event:
-        if event.kind != 0 and since <= event.time <= time + ROUNDING:
-            kind, since = event.kind, event.time
-    return since if kind == OFF else NEVER
+        if event.kind == ON and event.time <= time + ROUNDING:
+            back = max(back, event.time)
+    for event in p.event:
+        if event.kind == OFF and back < event.time <= time + ROUNDING:
+            failed = event.time if failed < 0.0 else min(failed, event.time)
+    return failed
 
 
 @kernel
@@ -151,8 +155,10 @@ def _book(time, span, gain, m):
     if failed < 0.0 and e.stored < full:
         e.mains += full - e.stored
         e.stored = full
-    elif failed >= 0.0:
-        m.o.failed_time = failed
+    if failed >= 0.0:
+        m.o.failed_time, m.o.back_time = failed, NEVER
+    elif m.o.failed_time >= 0.0 and m.o.back_time < 0.0:
+        m.o.back_time = time
     if e.stored > most:
         e.burnt += e.stored - most
         e.stored = most

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...modelkit import body
-from ...modelkit.base_motion import BASE_PROBLEM, BaseMotion, base_acceleration, moving
+from ...modelkit.base_motion import BASE_PROBLEM, BaseMotion, base_acceleration, base_after, moving
 from ...modelkit.excitation import course_problem
 from ...modelkit.gravity import gravity_across, gravity_along
 from ...modelkit.kernel import kernel
@@ -73,7 +73,7 @@ def rhs(t, q, dq, m):
     dq[WORK] = fx * q[VX] + fy * q[VY] + fz * q[VZ]
     dq[WORK_BASE] = 0.0
     if moving(p.base):
-        base_x, base_y = base_acceleration(m.time + t, p.base)
+        base_x, base_y = base_acceleration(m, t - m.half)
         dq[VX], dq[VY] = dq[VX] - base_x, dq[VY] - base_y
         dq[WORK_BASE] = -mass * (base_x * q[VX] + base_y * q[VY])
     dq[LOSS] = p.damping * (squared(q[VX]) + squared(q[VY]) + squared(q[VZ]))
@@ -90,7 +90,7 @@ def _publish(q, m):
     o.ax_free = -(p.stiffness * ex + p.damping * q[VX]) / mass
     o.ay_free = -(p.stiffness * ey + p.damping * q[VY]) / mass - down
     if moving(p.base):
-        base_x, base_y = base_acceleration(m.time + 2.0 * m.half, p.base)
+        base_x, base_y = base_after(m)
         o.ax_free, o.ay_free = o.ax_free - base_x, o.ay_free - base_y
     o.inv_m = 1.0 / mass
     o.k_over_m, o.c_over_m = p.stiffness / mass, p.damping / mass

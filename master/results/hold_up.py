@@ -9,7 +9,7 @@ from __future__ import annotations
 from ..quantities import LINK_ENERGIES, Owner, Summary, enter, first_touch
 from .final_state import ReadableSystem
 
-FAILED, LOCKED = "failed_time", "locked_time"  # s, of a link; below zero: never
+FAILED, BACK, LOCKED = "failed_time", "back_time", "locked_time"  # s, of a link; below zero: never
 
 
 def links(system: ReadableSystem) -> list[str]:
@@ -21,10 +21,12 @@ def add_hold_ups(summary: Summary, system: ReadableSystem, zero: float) -> None:
     """Of every link. zero, s: the scene's, on the simulation's clock; summary: with what touched when."""
     touched = first_touch(summary)
     for name in links(system):
-        failed, locked = (system.value(f"{name}.{time}") for time in (FAILED, LOCKED))
+        failed, back, locked = (system.value(f"{name}.{time}") for time in (FAILED, BACK, LOCKED))
         held = None if touched is None else touched + zero - failed
         if failed < 0.0:
             words, held = "the mains did not fail", None
+        elif back >= 0.0 and (held is None or held > back - failed):
+            words, held = f"levitated until the mains were back, {back - failed:.3g} s", None
         elif held is None:
             words = f"levitated to the end of the run, {summary['end_time'] + zero - failed:.3g} s"
         elif held < 0.0:

@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...modelkit.base_motion import base_acceleration, moving
+from ...modelkit.base_motion import base_acceleration, base_jerk, moving
 from ...modelkit.gravity import gravity_across, gravity_along
 from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
@@ -122,7 +122,7 @@ def modal_forces(m, since_middle, fx, fy):
         fx[k] = 0.0
         fy[k] = -down * m.d.weight[k]
     if moving(m.p.base):
-        base_x, base_y = base_acceleration(m.time + m.half + since_middle, m.p.base)
+        base_x, base_y = base_acceleration(m, since_middle)
         for k in range(m.d.modes):
             fx[k] -= base_x * m.d.weight[k]
             fy[k] -= base_y * m.d.weight[k]
@@ -130,14 +130,6 @@ def modal_forces(m, since_middle, fx, fy):
         load = m.u.station[j]
         _add(m, j, load.fx + load.dfx * since_middle, load.fy + load.dfy * since_middle, fx, fy)
         _tilt(m, j, load.mx + load.dmx * since_middle, load.my + load.dmy * since_middle, fx, fy)
-
-
-@kernel
-def base_jerk(m):
-    """Mean rate (m/s3, m/s3) of the base's acceleration over the macro step."""
-    before_x, before_y = base_acceleration(m.time, m.p.base)
-    after_x, after_y = base_acceleration(m.time + 2.0 * m.half, m.p.base)
-    return (after_x - before_x) / (2.0 * m.half), (after_y - before_y) / (2.0 * m.half)
 
 
 @kernel
@@ -301,7 +293,7 @@ def rhs(t, q, dq, m):
             load = m.u.station[j]
             tail_rate[WORK + j] += (load.fz + load.dfz * since_middle) * along[VZ]
     if moving(m.p.base):
-        base_x, base_y = base_acceleration(m.time + t, m.p.base)
+        base_x, base_y = base_acceleration(m, t - m.half)
         for k in range(m.d.modes):
             rate_along[WORK_OUTSIDE] -= m.d.weight[k] * (base_x * state.vx[k] + base_y * state.vy[k])
 

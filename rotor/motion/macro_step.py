@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...modelkit import numerics
-from ...modelkit.base_motion import base_acceleration, moving
+from ...modelkit.base_motion import base_acceleration, base_jerk, moving
 from ...modelkit.kernel import kernel
 from ...modelkit.numerics import squared
 from ...modelkit.ports import MODES
@@ -36,7 +36,6 @@ from .equations import (
     accelerations,
     add_spin_up,
     auxiliary,
-    base_jerk,
     modal,
     modal_force_rates,
     modal_forces,
@@ -101,7 +100,7 @@ def _tilting_work(q, m, j, half, start, area):
 def _work_of_base(q, m, half, start, area):
     """The work that `account` adds for the base's acceleration (J); half: of the macro step (s)."""
     px, py, _, _ = modal(q, m)
-    base, jerk, work = base_acceleration(m.time + half, m.p.base), base_jerk(m), 0.0
+    base, jerk, work = base_acceleration(m, 0.0), base_jerk(m), 0.0
     for k in range(m.d.modes):
         moment_x = half * (px[k] + start.x[k]) - area.x[k]
         moment_y = half * (py[k] + start.y[k]) - area.y[k]

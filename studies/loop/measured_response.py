@@ -6,7 +6,8 @@ over once two periods agree. With readings r and currents i of all runs as colum
 
     S = r/d (an axis by itself)     P = (r - d) i^-1     C = -i r^-1     compliance = displacement/force
 
-Events, unbalance and noise of the sensors are left out, so that nothing else is at the lines.
+Events, unbalance, noise of the sensors, and what else excites the scene are left out, so that nothing else
+is at the lines.
 """
 
 from __future__ import annotations
@@ -36,7 +37,9 @@ AMPLITUDE = 1e-7  # m, of a line
 LOOP = 0.1  # |L| above which plant and loop are compared; below it S tells little of them
 REPEATS = 3e-5  # of a line's answer, from one period to the next
 PERIODS = 12  # at most
-LEFT_OUT = {"sensing.noise": 0.0, "eccentricity": 0.0, "unbalance_scale": 0.0}
+LEFT_OUT = dict.fromkeys(("sensing.noise", "eccentricity", "unbalance_scale"), 0.0)
+LEFT_OUT |= dict.fromkeys(("inject.sensed", "inject.set", "inject.force"), 0.0)
+LEFT_OUT |= dict.fromkeys(("course.form", "base.course.form"), "none")
 
 
 @dataclass(frozen=True)
@@ -118,10 +121,9 @@ class _Bench:
         )  # fmt: skip
         calm = replace(scene, components=specs, run=run, zero=None)
         with opened(calm, in_process=True, listening=False) as system:
-            rotors = {a.body for a in system.attachments if a.bearing in loops.bearing_names}
-            names = [f"{one}.{key}" for one in (*rotors, *loops.bearing_names) for key in LEFT_OUT]
-            known = [name for name in names if name in system and system.value(name)]
-        calm = calm.set({name: 0.0 for name in known})
+            pairs = [(f"{one}.{key}", value) for one in specs for key, value in LEFT_OUT.items()]
+            known = {name: value for name, value in pairs if name in system and system.value(name)}
+        calm = calm.set(known)
         return cls(calm, loops, np.array(numbers), length, [])
 
     @property

@@ -48,6 +48,21 @@ def test_after_a_shock_a_free_rotor_lags_behind_the_base(rotor: str):
 
 
 @pytest.mark.parametrize("rotor", ROTORS)
+@pytest.mark.parametrize("width", [3e-6, 70e-6])
+def test_no_shock_is_too_short_for_the_macro_step(rotor: str, width: float):
+    """As the half sine's integral, wherever it lies among macro steps of 20 us."""
+    still = {"unbalance_scale": 0.0} if rotor == "rotor_I" else {}
+    shock = {"base.x": 3e4, "base.course.form": "pulse", "base.course.begin": 0.537e-3}
+    scene = alone(rotor, {**shock, "base.course.width": width, **still}, 2e-3)
+    ports = [
+        f"rotor.{port}.vx" for port in (("A", "amb") if rotor == "rigid_rotor" else ("amb_A", "amb_B"))
+    ]
+    _, found, _ = history(scene, ports)
+    speed = -3e4 * 2.0 * width / math.pi
+    assert [found[port][-1] for port in ports] == pytest.approx([speed] * 2, rel=1e-6)
+
+
+@pytest.mark.parametrize("rotor", ROTORS)
 def test_a_base_that_accelerates_upwards_is_gravity(rotor: str):
     """Also in what a bearing is told; an elastic rotor, which nothing bends, falls as a whole."""
     names = [f"rotor.{ROTORS[rotor]}.{name}" for name in ("y", "vy", "ay_free")]

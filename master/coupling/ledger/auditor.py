@@ -150,7 +150,7 @@ class _Spin:
 
 ESTIMATED_BY_MASTER = "estimated by the master from forces and motions that it passes on"
 REPORT = "contact.first_time"  # what a bearing that reports its contact has
-POWERED = ("shutdown_time", "active")  # what a magnetic bearing has
+POWERED = ("shutdown_time", "active", "supplied")  # what magnetic bearings and exciters have
 CLEARANCE = "clearance"
 VARIABLES = {  # name: unit and meaning
     "contact.force": ("N", "mean contact force on the journal over the last macro step"),

@@ -113,6 +113,16 @@ def test_a_link_that_locked_out_waits_for_the_voltage_of_the_mains():
     assert out["locked_time"] == pytest.approx(0.5e-3 * (100.0**2 - 50.0**2) / 100.0, rel=1e-9)
 
 
+def test_a_failure_is_dated_once_and_ends_when_the_mains_are_back():
+    one = link((1.5e-3, OFF), (3e-3, OFF), (5.2e-3, 2))
+    for k in range(8):
+        one.step(k * 1e-3, 1e-3)
+        is_back = one.record["o"]["back_time"] >= 0.0
+        assert is_back == (k >= 5)
+    assert one.record["o"]["failed_time"] == pytest.approx(1.5e-3)
+    assert one.record["o"]["back_time"] == pytest.approx(5.2e-3)
+
+
 def test_voltages_out_of_order_are_refused():
     for wrong in ({"least": 100.0}, {"ceiling": 99.0}):
         with pytest.raises(ModelError, match="the mains' voltage must be above least"):
