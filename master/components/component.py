@@ -61,7 +61,8 @@ REPORTS = (  # groups of what bearings and bodies say of themselves, for figures
 )
 LOOP = (  # what actuators and controllers say of themselves beside those
     *("link", "link_energy", "peak_current", "least_gap", "capacitor", "locked"),
-    *("commanded_time", "captured_time", "samples", "missed"),
+    *("commanded_time", "captured_time", "samples", "missed", "limited_time"),
+    *("failed_time", "back_time", "locked_time", "given_x", "given_y"),
 )
 STROKE = ("stroke", "stop_force")  # what a mount says of itself, alone or for each seat of a foundation
 SUPPLIED = "supplied"  # J, energy that a component brings in

@@ -211,10 +211,9 @@ class _PortConnections:
 
 def _ports(component: Component) -> list[str]:
     """Names before the last dot under which a component has a position."""
-    names = {name.rpartition(".")[0] for name in component.variables if "[" not in name}
-    return sorted(
-        port for port in names if all(f"{port}.{axis}" in component.variables for axis in POSITION)
-    )
+    known = {n for n, v in component.variables.items() if v.causality is not Causality.PARAMETER}
+    names = {name.rpartition(".")[0] for name in known if "[" not in name}
+    return sorted(port for port in names if all(f"{port}.{axis}" in known for axis in POSITION))
 
 
 def port_connections(

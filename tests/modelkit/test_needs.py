@@ -20,7 +20,7 @@ from touchdown.modelkit.variables import Causality, Scalar, Variable, flatten, r
 MODELS = [
     name
     for name in fmu_names()
-    if needs(recipe(name).model) and name not in ("rotor_II", "compressor_rotor")
+    if needs(recipe(name).model) and name not in ("rotor_II", "compressor_rotor", "exciter")
 ]
 OTHERS = re.compile(r"\[([2-9]|\d\d)\]|mount_[ABD]|\.[ABD]\.")  # of members that are alike, one is enough
 
@@ -75,7 +75,12 @@ BESIDE: Mapping[str, Mapping[str, float]] = {
     "ball_friction.kind": {"balls.bunching": 1.0},
     **{f"mode[1].{name}": {"mode[1].A.x": 1.0} for name in ("omega", "damping_ratio", "mass")},
 }
-UNSEEN = {  # a controller that samples nothing here; one axis, both; rings that do not bend or tilt
+UNSEEN = {  # a controller that samples nothing here; one axis, both; tables of one point; stiff rings
+    *(
+        f"{body}.base.course.{name}"
+        for body in ("housing", "rigid_rotor", "rotor_I", "spindle_rotor")
+        for name in ("points", "point[1].time", "point[1].share")
+    ),
     *("amb_controller.gain.filter", "amb_controller.event[1].time", "amb_axial.inject.axis"),
     *(
         f"angular_{which}.ring.{name}"

@@ -113,7 +113,7 @@ def test_a_package_carries_the_link(tmp_path: Path):
     names = ["rotor.A.y", "link.voltage", "link.energy.stored"]
     _, expected, _ = history(scene, names)
     package = find_scene(str(tmp_path / "link.ssp"))
-    assert run_to_end(package, tmp_path / "run")["seats"].keys() == {"A"}  # no contact of magnets is estimated
+    assert run_to_end(package, tmp_path / "run")["seats"].keys() == {"A"}  # none of magnets
     _, found, _ = history(package, names)
     assert expected["link.voltage"][-1] < 99.9
     for name in names:

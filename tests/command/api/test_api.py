@@ -270,7 +270,7 @@ def test_numbers_of_numpy_are_numbers() -> None:
 def test_fractions_and_speeds_are_numbers_or_texts(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """As options of the command come, too."""
     found: list[Any] = []
-    monkeypatch.setattr(over_speed, "loops_in", lambda scene, speeds: found.extend(speeds))
+    monkeypatch.setattr(over_speed, "loops_in", lambda scene, speeds, *_: found.extend(speeds))
     touchdown.amb_margins(SCENE, speeds=[100.0, "-60 rpm"])
     touchdown.amb_margins(SCENE, speeds="60 rpm")
     assert found == pytest.approx([100.0, -6.283, 6.283], abs=1e-3)
