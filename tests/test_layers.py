@@ -42,10 +42,10 @@ LAYERS = {  # package: what it may import beside itself and the standard library
 }
 BUDGETS = {  # lines of a package at most, with room for one feature. A commit that raises one says why
     "rotor": 6960,
-    "bearings": 21700,
-    "modelkit": 4380,
+    "bearings": 21710,
+    "modelkit": 4390,
     "fmus": 3450,
-    "master": 21190,
+    "master": 21200,
     "studies": 14120,
     "reports": 6445,
     "command": 3625,

@@ -84,6 +84,7 @@ def percent(found: Comparison, title: str) -> float:
     return 100.0 * row(found, title).errors["change"]
 
 
+@pytest.mark.slow
 def test_prices_are_what_the_parts_are_worth(disk: Comparison) -> None:
     """Forces inside are compared where both have them: a bushing has no balls, this bearing no pockets."""
     there = disk.reference

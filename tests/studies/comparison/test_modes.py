@@ -61,6 +61,7 @@ def rotor_i() -> Comparison:
     return found
 
 
+@pytest.mark.slow
 def test_the_reference_is_better_than_what_is_measured_with_it(rotor_i: Comparison) -> None:
     coupling, exact = rotor_i.beside
     assert 7.6e-3 < rotor_i.reference.drop.first < 7.8e-3

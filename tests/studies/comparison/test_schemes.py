@@ -52,6 +52,7 @@ def order(found: Comparison, scheme: str, quantity: str) -> Order:
     return fitted
 
 
+@pytest.mark.slow
 def test_the_reference_is_far_better_than_what_is_measured_with_it(disk: Comparison) -> None:
     start, end = disk.reference.landing.impacts["A"]
     assert 7.8e-3 < start < 8.0e-3 < end < disk.reference.landing.end

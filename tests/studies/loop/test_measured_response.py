@@ -83,6 +83,7 @@ def test_limits_and_a_large_amplitude_show(
     assert (tmp_path / "bode.png").exists()
 
 
+@pytest.mark.slow
 def test_a_controller_of_others_gives_the_same(tmp_path: Path):
     """And the unbalance, left out, does not show; what is left of transients differs by 1.3e-4."""
     FmuBuilder.build_FMU(ROOT / "examples" / "pid_controller.py", dest=tmp_path)

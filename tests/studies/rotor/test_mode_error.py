@@ -139,6 +139,7 @@ def first_peaks(
         return {seat: drop.traces[seat].peaks(end) for seat, (_, end) in found.items()}, found
 
 
+@pytest.mark.slow
 def test_what_new_writes_is_what_a_drop_finds(tmp_path: Path) -> None:
     """The spindle keeps 8 modes at an error of 4.8 %; with the number that is written 1.6 % is left.
 

@@ -270,6 +270,7 @@ def test_the_ways_a_window_whirls(kinds: str, said: str) -> None:
     assert whirls_in_words(verdicts, Window(None, None, tuple(verdicts))) == said
 
 
+@pytest.mark.slow
 def test_fig_14_is_counted_over_phases_that_resolve_windows(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
