@@ -14,9 +14,8 @@ limit.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
-from ...modelkit.excitation import Lines
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.model import Model
 from ...modelkit.numerics import squared
@@ -26,7 +25,7 @@ from ...modelkit.variables import Choices, choice, group, groups, integer, real
 from .. import seat
 from . import amplifier, law, magnet, sensing
 from .amplifier import ALWAYS, AXES, COIL_OFF, COILS, NOTHING, Amplifier, AmplifierEvent, PartState, Supply
-from .injection import Injection, injected
+from .injection import INTO_READINGS, Injection, injected
 from .law import ROUNDING, limited
 from .magnet import EDDIES, EDDY_DIRECT, EDDY_FACTORS, EDDY_RATES, Circuit, Magnet
 from .sensing import Sensor
@@ -486,11 +485,10 @@ _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")
 _FACTORS = ("magnet.gap", "magnet.area", "magnet.turns", "magnet.pole_angle", "amplifier.bias")
 _LIMITS = ("amplifier.current_limit", "magnet.flux_limit", "magnet.iron_path")
 _HOLD = ("journal.ax_free", "journal.ay_free", *_STATIC, *_FACTORS, *_LIMITS, "magnet.angle")
-_LINES = tuple(f"inject.lines.{one.name}" for one in fields(Lines))
 _SENSED = (
     *("journal.x", "journal.y", "housing.x", "housing.y", "sensor.x", "sensor.y", "magnet.angle"),
     *("sensing.at", "sensing.gain", "sensing.noise", "sensing.seed"),
-    *("inject.sensed", "inject.axis", "inject.begin", *_LINES),
+    *INTO_READINGS,
 )
 
 MODEL = Model(

@@ -7,9 +7,8 @@ disc changes no force. Magnets, amplifiers, DC link, sensor, samples and events 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
-from ...modelkit.excitation import Lines
 from ...modelkit.kernel import kernel
 from ...modelkit.model import Model
 from ...modelkit.ports import MountMotion, MountReaction, SeatReaction, SpatialLoad
@@ -20,7 +19,7 @@ from ..seat import space
 from . import amb_actuator, amplifier, law, sensing
 from .amb_actuator import EDDY_LOSS, EVENTS, FLUX, SUPPLIED, AxisState, SetPoints
 from .amplifier import AmplifierEvent, PartState
-from .injection import injected
+from .injection import INTO_READINGS, injected
 from .law import ROUNDING
 from .magnet import Circuit, Core
 from .sensing import SpatialHeldMotion, Transducer
@@ -174,12 +173,7 @@ _FACTORS = ("magnet.gap", "magnet.area", "magnet.turns", "amplifier.bias")
 _LIMITS = ("amplifier.current_limit", "magnet.flux_limit", "magnet.iron_path")
 _SENSED = (
     *("journal.z", "housing.z", "sensing.gain", "sensing.noise", "sensing.seed"),
-    *(
-        "inject.sensed",
-        "inject.axis",
-        "inject.begin",
-        *(f"inject.lines.{one.name}" for one in fields(Lines)),
-    ),
+    *INTO_READINGS,
 )
 
 MODEL = Model(

@@ -6,13 +6,17 @@ the journal at the magnets, along the bearing's axes. Readings and currents chan
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from ...modelkit.excitation import Lines, sum_of_lines
 from ...modelkit.kernel import kernel
 from ...modelkit.variables import Choices, choice, group, real
 from .law import ROUNDING
 
+INTO_READINGS = (  # settings of an actuator that its readings depend on
+    *("inject.sensed", "inject.axis", "inject.begin"),
+    *(f"inject.lines.{one.name}" for one in fields(Lines)),
+)
 AXES = Choices("InjectedAxes", ("both", "first", "second"))
 
 

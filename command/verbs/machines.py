@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 def show_new(scene: Scene, folder: Path, notes: list[str]) -> int:
     """Print what is to be known of a new machine, and how to go on; FAILED where its loops are no good."""
     from ...master.scene.file import SCENE_FILE
-    from ...studies.machine.levitated import UNFIT
+    from ...studies.machine.controlled_text import UNFIT
 
     end = f"{folder / SCENE_FILE}: now run it with\n  touchdown run {folder}"
     print("\n".join([*filter(None, [scene.about.strip()]), *(f"note: {note}" for note in notes), end]))

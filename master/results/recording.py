@@ -18,15 +18,8 @@ from ..coupling.recording_file import END, NAMES, OTHERS, TIME, ZERO, link_name
 
 INSTANTS = (  # variables that keep when something happened, on the simulation's clock; below zero: never
     *("first_time", "over_time", "sync_time", "contact_time", "stop_time", "commanded_time"),
-    *(
-        "captured_time",
-        "failed_time",
-        "back_time",
-        "locked_time",
-        "peak_bending_time",
-        "peak_shear_time",
-        "kept_time",
-    ),
+    *("captured_time", "failed_time", "back_time", "locked_time"),
+    *("peak_bending_time", "peak_shear_time", "kept_time"),
 )
 CONTRACT_INSTANTS = ("contact.first_time", "ring.sync_time")  # of them, what third-party FMUs give
 

@@ -10,6 +10,10 @@ from .mount_rules import heading
 
 OFF, ON = "20 ms", "220 ms"
 AXES = (1, 2)  # of a bearing
+UNFIT = (
+    "--controller: a loop is unstable or leaves zone A up to the speed (exit status 2); the files are "
+    "written, to go on from"
+)
 
 
 def controller(bearing: Support) -> str:

@@ -19,16 +19,13 @@ from ..loop.design import tuned
 from ..loop.linear_loops import Sampled, Unbalance, shortfalls
 from ..loop.margins import ZONES, Margins
 from ..loop.over_speed import Found, loops_in, settled
+from .controlled_text import UNFIT
 from .machine_design import CURRENT, FLUX, FORCE_LIMIT_RATIO, GRAVITY, Design, Levitation, Magnets
 from .scene_text import scene_text
 
 PERIODS = (100e-6, 50e-6, 25e-6)  # s, from sample to sample, of which the first with zone A is taken
 MORE = 1.5  # of the reserve, where bias, load and unbalance take too much
 ENLARGED = 4  # times at most
-UNFIT = (
-    "--controller: a loop is unstable or leaves zone A up to the speed (exit status 2); the files are "
-    "written, to go on from"
-)
 BESIDE = 0.1  # of a bending mode's frequency: a peak nearer to it is the mode's
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ...bearings.catalogue import Bearing
 from ...bearings.catalogue.landing import landing
@@ -19,9 +20,11 @@ from ...master.scene.plausible import MAX_BORE_SPEED, SPEED_RATIO_LIMIT
 from ...rotor.beams.shaft import Shaft
 from ...rotor.modal.modes import RIGID_MODES, basis
 from ...rotor.static_deflection import at_rest
-from ..loop.design import Tuned
 from ..rotor.mode_error import ImpactSeat, ModeError, fewest_modes, impact_seat
 from ..rotor.rotor_report import pulling
+
+if TYPE_CHECKING:
+    from ..loop.design import Tuned  # the loops, which most machines do without
 
 GRAVITY = 9.81  # m/s2
 LEVITATION_FREQUENCY = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing

@@ -24,7 +24,6 @@ from ...rotor.beams.shaft import Shaft, Station
 from ...rotor.file import parse_rotor, rotor_text, shipped_rotors
 from ..rotor.rotor_report import find_rotor
 from .bearings import find_bearing
-from .levitated import levitated
 from .machine_design import GRAVITY, Design, Support, first_bending, kept_modes, sensible_speed, supports
 from .mount_rules import chosen_mount
 from .scene_text import scene_text
@@ -146,6 +145,8 @@ def machine(request: Wanted, title: str) -> _Machine:
         design = _rigid(request, request.mass, title, places)
         notes = design.notes()
     if request.controller:
+        from .levitated import levitated  # the loops, which other machines do without
+
         design, more = levitated(design, files, shaft)
         notes += more
     return _Machine(files | {SCENE_FILE: scene_text(design)}, notes)
